@@ -1,0 +1,137 @@
+#include "external_fix.hpp"
+
+#include "../core/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nscd {
+
+ExternalFix::ExternalFix(const Library &library, const std::string &pair_style, double cutoff, int group_bit,
+                         const Settings &settings, Step::CustomSolver custom) :
+    library_(library),
+    pair_style_(pair_style), cutoff_(cutoff), group_bit_(group_bit), step_(settings, std::move(custom))
+{
+}
+
+void ExternalFix::callback(void *self, std::int64_t, int owned, int *, double **, double **f_external)
+{
+  static_cast<ExternalFix *>(self)->guarded();
+  // The contact forces are in LAMMPS' own force array, to which fix external adds this one.
+  if (owned > 0) std::fill_n(f_external[0], 3 * std::size_t(owned), 0.0);
+}
+
+void ExternalFix::invoke() { guarded(); }
+
+// Nothing may be thrown through LAMMPS: what goes wrong is kept, the run is made to end after this step, and the
+// caller of `run` raises it. Until then the arrays stay as they are.
+void ExternalFix::guarded()
+{
+  if (failure_) return;
+  try {
+    advance();
+  } catch (...) {
+    failure_ = std::current_exception();
+    library_.force_timeout(library_.handle);
+  }
+}
+
+void ExternalFix::advance()
+{
+  // LAMMPS calls fixes in the setup of each run too: no step is taken there.
+  if (library_.get_thermo(library_.handle, "elapsed") == 0) {
+    require_atoms();
+    find_list();
+    step_.begin_run();
+    return;
+  }
+  const Grains g = grains();
+  step_.advance(g, pairs(g), *library_.global<double>("dt"));
+  force_rebuild(step_.wants_rebuild());
+  record(timestep());
+}
+
+void ExternalFix::require_atoms() const
+{
+  const auto setting = [this](const char *name) { return library_.extract_setting(library_.handle, name); };
+  if (setting("radius_flag") != 1) fail("atoms have no radius: use atom_style sphere");
+  if (setting("tagint") != 4) fail("this LAMMPS was built with 64-bit atom IDs; nscd needs 32-bit ones");
+  if (setting("world_size") != 1)
+    fail("nscd runs on one MPI rank, this run has ", setting("world_size"), ": start LAMMPS on one rank");
+}
+
+void ExternalFix::find_list()
+{
+  list_ = library_.find_pair_neighlist(library_.handle, pair_style_.c_str(), 1, 0, 0);
+  if (list_ < 0) fail("pair_style ", pair_style_, " has no neighbor list: use pair_style zero CUTOFF");
+}
+
+std::int64_t ExternalFix::timestep() const { return *library_.global<std::int64_t>("ntimestep"); }
+
+Grains ExternalFix::grains()
+{
+  Grains g;
+  g.owned = library_.extract_setting(library_.handle, "nlocal");
+  g.ghosts = library_.extract_setting(library_.handle, "nghost");
+  const double natoms = library_.get_natoms(library_.handle);
+  if (g.owned != natoms)
+    fail(natoms - g.owned, " of ", natoms, " grains left the box: close it with wall planes or boundary s or m");
+  g.x = *library_.per_atom<double *>("x");
+  g.v = *library_.per_atom<double *>("v");
+  g.f = *library_.per_atom<double *>("f");
+  g.radius = library_.per_atom<double>("radius");
+  g.tag = library_.per_atom<std::int32_t>("id");
+  g.mask = library_.per_atom<int>("mask");
+  g.mass = library_.per_atom<double>("rmass");
+  if (!g.mass) {
+    const double *by_type = library_.per_atom<double>("mass");
+    const int *type = library_.per_atom<int>("type");
+    masses_.resize(g.owned);
+    for (int i = 0; i < g.owned; ++i) masses_[i] = by_type[type[i]];
+    g.mass = masses_.data();
+  }
+  g.group = group_bit_;
+  g.force_to_acceleration = *library_.global<double>("ftm2v");
+  return g;
+}
+
+PairList ExternalFix::pairs(const Grains &g)
+{
+  const int count = library_.neighlist_num_elements(library_.handle, list_);
+  atoms_.resize(count);
+  counts_.resize(count);
+  first_.resize(count);
+  for (int k = 0; k < count; ++k)
+    library_.neighlist_element_neighbors(library_.handle, list_, k, &atoms_[k], &counts_[k], &first_[k]);
+  PairList p;
+  p.count = count;
+  p.atom = atoms_.data();
+  p.neighbors = counts_.data();
+  p.first = first_.data();
+  p.cross_pairs_twice = library_.extract_setting(library_.handle, "newton_pair") == 0;
+  p.just_built = *library_.global<int>("neigh_ago") == 0;
+  if (p.just_built || largest_radius_ == 0)
+    largest_radius_ = g.owned ? *std::max_element(g.radius, g.radius + g.owned) : 0;
+  p.reach = cutoff_ - 2 * largest_radius_;
+  return p;
+}
+
+// A fix external cannot ask for a new list, but LAMMPS builds one at the next step while its distance check is off.
+void ExternalFix::force_rebuild(bool wanted)
+{
+  int *const check = library_.global<int>("neigh_dist_check");
+  if (wanted && !forced_) kept_check_ = *check;
+  if (wanted) *check = 0;
+  else if (forced_) *check = kept_check_;
+  forced_ = wanted;
+}
+
+void ExternalFix::record(std::int64_t timestep)
+{
+  const StepReport &report = step_.report();
+  StatsRow row{timestep, {}, report.seconds_contacts, report.seconds_solver};
+  for (int c = 0; c < report_columns; ++c) row.columns[c] = report_column(report, c);
+  stats_.push_back(row);
+}
+
+}    // namespace nscd

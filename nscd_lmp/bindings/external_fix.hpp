@@ -1,0 +1,68 @@
+// The Python door: a whole step inside the callback of `fix external`, on LAMMPS' own arrays.
+#pragma once
+
+#include "../core/report.hpp"
+#include "../core/step.hpp"
+#include "library.hpp"
+
+#include <exception>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace nscd {
+
+// A row of .stats.
+struct StatsRow {
+  std::int64_t step;
+  double columns[report_columns];
+  double seconds_contacts, seconds_solver;
+};
+
+class ExternalFix {
+ public:
+  // `cutoff`: pair cutoff plus skin, m, up to which centres are listed at a build.
+  ExternalFix(const Library &library, const std::string &pair_style, double cutoff, int group_bit,
+              const Settings &settings, Step::CustomSolver custom);
+
+  // Called by LAMMPS with the step's arrays: the signature of FixExternalFnPtr.
+  static void callback(void *self, std::int64_t timestep, int owned, int *tags, double **x, double **f_external);
+  // The same without fix external: forces are written to LAMMPS' own array alone.
+  void invoke();
+
+  const Step &step() const { return step_; }
+  const std::vector<StatsRow> &stats() const { return stats_; }
+  void set_cutoff(double cutoff) { cutoff_ = cutoff; }
+
+  // What stopped the run; empty if nothing did. Reading it forgets it.
+  std::exception_ptr take_failure() { return std::exchange(failure_, nullptr); }
+  bool failed() const { return bool(failure_); }
+
+ private:
+  void advance();
+  void guarded();
+  void require_atoms() const;
+  void find_list();
+  Grains grains();
+  PairList pairs(const Grains &grains);
+  void force_rebuild(bool wanted);
+  void record(std::int64_t timestep);
+  std::int64_t timestep() const;
+
+  Library library_;
+  std::string pair_style_;
+  double cutoff_;
+  int group_bit_;
+  Step step_;
+  int list_ = -1;
+  std::vector<int> atoms_, counts_;
+  std::vector<int *> first_;
+  std::vector<double> masses_;
+  std::vector<StatsRow> stats_;
+  double largest_radius_ = 0;
+  bool forced_ = false;
+  int kept_check_ = 1;
+  std::exception_ptr failure_;
+};
+
+}    // namespace nscd

@@ -1,0 +1,172 @@
+// nscd_lmp._core: the core for Python.
+#include "../core/error.hpp"
+#include "external_fix.hpp"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <cstring>
+
+namespace nb = nanobind;
+using namespace nb::literals;
+using nscd::ExternalFix;
+using nscd::State;
+
+namespace {
+
+// A new numpy array of `count` rows of `columns` values (columns 0: one-dimensional), filled by value(row, column).
+template <class T, class Value>
+nb::ndarray<nb::numpy, T> make_array(std::size_t count, std::size_t columns, Value value)
+{
+  const std::size_t width = std::max<std::size_t>(columns, 1);
+  T *data = new T[std::max<std::size_t>(count * width, 1)];
+  nb::capsule owner(data, [](void *p) noexcept { delete[] static_cast<T *>(p); });
+  for (std::size_t r = 0; r < count; ++r)
+    for (std::size_t c = 0; c < width; ++c) data[r * width + c] = value(r, c);
+  const std::size_t shape[2] = {count, columns};
+  return nb::ndarray<nb::numpy, T>(data, columns ? 2 : 1, shape, owner);
+}
+
+int body_index(const State &s, int body) { return body < s.grains.owned && s.bodies[body][3] > 0 ? body : -1; }
+
+// The problem as a Python solver sees it; the names are those of nscd_lmp.ContactSystem.
+nb::dict contact_system(const State &s)
+{
+  const auto n = s.contacts.size();
+  const auto *bodies = s.bodies.data();
+  nb::dict d;
+  d["body_i"] = make_array<int>(n, 0, [&](auto k, auto) { return body_index(s, s.contacts[k].i); });
+  d["body_j"] = make_array<int>(n, 0, [&](auto k, auto) { return body_index(s, s.contacts[k].j); });
+  d["inverse_mass"] = make_array<double>(s.grains.owned, 0, [&](auto i, auto) { return bodies[i][3]; });
+  d["normal"] = make_array<double>(n, 3, [&](auto k, auto c) { return s.contacts[k].normal[c]; });
+  d["gap"] = make_array<double>(n, 0, [&](auto k, auto) { return s.infos[k].gap; });
+  d["bias"] = make_array<double>(n, 0, [&](auto k, auto) { return s.contacts[k].bias; });
+  d["start"] = make_array<double>(n, 0, [&](auto k, auto) { return s.contacts[k].impulse; });
+  d["velocity"] = make_array<double>(
+      n, 0, [&](auto k, auto) { return nscd::normal_velocity(s.contacts[k], bodies) + s.contacts[k].bias; });
+  return d;
+}
+
+// Wraps a Python callable: it gets the contact system and returns one impulse a contact.
+nscd::Step::CustomSolver python_solver(nb::object solve)
+{
+  if (solve.is_none()) return {};
+  return [solve](const State &state, std::span<double> impulses) {
+    nb::gil_scoped_acquire gil;
+    using Impulses = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+    nb::object answer = solve(contact_system(state));
+    const auto given = nb::cast<Impulses>(answer);
+    if (given.shape(0) != impulses.size())
+      nscd::fail("the Python solver returned ", given.shape(0), " impulses for ", impulses.size(), " contacts");
+    std::copy_n(given.data(), impulses.size(), impulses.begin());
+  };
+}
+
+nscd::Library make_library(const nb::dict &addresses)
+{
+  nscd::Library library;
+  const auto load = [&](const char *name, auto &function) {
+    const auto address = nb::cast<std::uintptr_t>(addresses[name]);
+    function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(address);
+  };
+  load("handle", library.handle);
+  load("lammps_extract_atom", library.extract_atom);
+  load("lammps_extract_global", library.extract_global);
+  load("lammps_extract_setting", library.extract_setting);
+  load("lammps_get_thermo", library.get_thermo);
+  load("lammps_get_natoms", library.get_natoms);
+  load("lammps_find_pair_neighlist", library.find_pair_neighlist);
+  load("lammps_neighlist_num_elements", library.neighlist_num_elements);
+  load("lammps_neighlist_element_neighbors", library.neighlist_element_neighbors);
+  load("lammps_force_timeout", library.force_timeout);
+  return library;
+}
+
+nb::bytes stats_bytes(const ExternalFix &fix)
+{
+  return nb::bytes(reinterpret_cast<const char *>(fix.stats().data()), fix.stats().size() * sizeof(nscd::StatsRow));
+}
+
+nb::ndarray<nb::numpy, double> contact_rows(const ExternalFix &fix)
+{
+  const State &state = fix.step().state();
+  std::vector<double> rows(state.contacts.size() * nscd::contact_columns);
+  nscd::fill_contact_rows(state, rows.data());
+  return make_array<double>(state.contacts.size(), nscd::contact_columns,
+                            [&](auto k, auto c) { return rows[k * nscd::contact_columns + c]; });
+}
+
+// Names and defaults of everything registered, for choice lists, tests and legends.
+nb::list solver_table()
+{
+  nb::list table;
+  for (const auto &s : nscd::solvers()) {
+    nb::dict row;
+    row["name"] = std::string(s.name);
+    row["title"] = std::string(s.title);
+    row["parameter"] = std::string(s.parameter);
+    row["default"] = s.default_parameter;
+    table.append(row);
+  }
+  return table;
+}
+
+nb::list law_table()
+{
+  nb::list table;
+  for (const auto &l : nscd::laws()) {
+    nb::dict row;
+    row["name"] = std::string(l.name);
+    row["title"] = std::string(l.title);
+    table.append(row);
+  }
+  return table;
+}
+
+template <std::size_t N>
+nb::list names(const std::array<std::string_view, N> &columns)
+{
+  nb::list list;
+  for (const auto name : columns) list.append(std::string(name));
+  return list;
+}
+
+void bind_external_fix(nb::module_ &m)
+{
+  nb::class_<ExternalFix>(m, "ExternalFix")
+      .def(
+          "__init__",
+          [](ExternalFix *self, const nb::dict &library, const std::string &pair_style, double cutoff, int group_bit,
+             const std::vector<std::string> &keywords, nb::object solver) {
+            nscd::Settings settings;
+            nscd::parse_keywords(settings, keywords);
+            new (self) ExternalFix(make_library(library), pair_style, cutoff, group_bit, settings,
+                                   python_solver(std::move(solver)));
+          },
+          "library"_a, "pair_style"_a, "cutoff"_a, "group_bit"_a, "keywords"_a, "solver"_a.none())
+      .def_prop_ro("callback_address", [](const ExternalFix &) { return std::uintptr_t(&ExternalFix::callback); })
+      .def_prop_ro("self_address", [](const ExternalFix &fix) { return std::uintptr_t(&fix); })
+      .def("invoke", &ExternalFix::invoke)
+      .def("set_cutoff", &ExternalFix::set_cutoff, "cutoff"_a)
+      .def_prop_ro("failed", &ExternalFix::failed)
+      .def("raise_failure", [](ExternalFix &fix) { if (auto e = fix.take_failure()) std::rethrow_exception(e); })
+      .def("stats_bytes", &stats_bytes)
+      .def("contact_rows", &contact_rows)
+      .def("describe", [](const ExternalFix &fix) { return nscd::describe(fix.step().settings()); });
+}
+
+}    // namespace
+
+NB_MODULE(_core, m)
+{
+  m.doc() = "Compiled core of nscd_lmp.";
+  nb::exception<nscd::Error>(m, "NscdError", PyExc_RuntimeError);
+  bind_external_fix(m);
+  m.def("solvers", &solver_table, "Solvers in legend order: name, title, parameter, default (multiple of 1/W_nn).");
+  m.def("laws", &law_table, "Contact laws: name, title.");
+  m.attr("REPORT_COLUMNS") = names(nscd::report_column_names);
+  m.attr("CONTACT_COLUMNS") = names(nscd::contact_column_names);
+}

@@ -1,0 +1,61 @@
+// The data that a sweep touches, laid out for it.
+//
+// A sweep visits contacts one after another and is bound by latency, not by arithmetic. Hence:
+// one contact is one cache line (64 B), one body is one 32 B vector that brings its inverse mass along,
+// and obstacles (walls, atoms outside the group) are bodies of infinite mass, so the loop has no branches.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace nscd {
+
+// Four doubles the compiler keeps in vector registers (two SSE2, one AVX).
+using Vec4 = double __attribute__((vector_size(32)));
+
+// {vx, vy, vz, 1/m}: velocity in m/s, inverse mass in 1/kg, 0 for an obstacle.
+using Body = Vec4;
+
+// One frictionless contact. The unknown is the normal impulse p >= 0 (N s) that pushes body i along the
+// unit normal, which points from j to i; the contact law asks for
+//     v = n.(v_i - v_j) + bias >= 0,  p >= 0,  v p = 0.
+// `bias` is what the scheme adds: e v_n^k (Newton's impact law) or gap/dt (law gap).
+struct alignas(64) Contact {
+  Vec4 normal;      // unit normal, fourth component 0 so that a body's inverse mass is left alone
+  double bias;      // m/s
+  double w_inverse; // 1 / W_nn, W_nn = 1/m_i + 1/m_j, kg
+  double impulse;   // N s
+  std::int32_t i, j;
+};
+static_assert(sizeof(Contact) == 64);
+
+// What a contact needs outside the sweep.
+struct ContactInfo {
+  double gap;          // m, negative when overlapping; at detection, then at the end of the step
+  double speed_before; // n.(v_i - v_j) at the start of the step, m/s
+  std::uint64_t key;   // the pair's tags, or tag and wall: identifies the contact across steps
+  std::int32_t atom_i; // index into the arrays of all atoms (ghosts too)
+  std::int32_t atom_j; // the same, or -1 - wall
+};
+
+inline double dot(const Vec4 &a, const Vec4 &b)
+{
+  const Vec4 c = a * b;
+  return (c[0] + c[1]) + (c[2] + c[3]);
+}
+
+// Normal relative velocity of the contact's bodies, m/s, > 0 when separating.
+inline double normal_velocity(const Contact &c, const Body *bodies)
+{
+  return dot(c.normal, bodies[c.i] - bodies[c.j]);
+}
+
+// Hands the impulse `dp` (N s) to both bodies.
+inline void apply_impulse(const Contact &c, double dp, Body *bodies)
+{
+  const Body bi = bodies[c.i], bj = bodies[c.j];
+  bodies[c.i] = bi + c.normal * (dp * bi[3]);
+  bodies[c.j] = bj - c.normal * (dp * bj[3]);
+}
+
+}    // namespace nscd

@@ -1,0 +1,32 @@
+// The stopping criterion of Barboteu & Dumont (2017), equation (42), and a relative residual beside it.
+//
+//   eps_glob = 1/N_c sum_c [ eps_motion + eps_bc + eps_pen ]
+//   eps_motion = |v~ - v~_m|   the local solver's own velocity against the one that the bodies have
+//   eps_bc     = |v~ p|        the bipotential, 0 iff Signorini's law holds
+//   eps_pen    = -min(0, v~)   penetration
+//
+// Deviation: (28) has the indicator of p >= 0 inside the bipotential, infinite for a tensile impulse. EBP,
+// EAL and PDAS (gamma != 1) can pass through p < 0 with v~ = 0, which (42) as printed would accept; the
+// indicator enters eps_bc as the velocity W~_nn |min(0, p)| instead.
+//
+// (42) adds m/s and N m, so it means nothing across scales. Reported beside it is the natural map used in
+// the FCLIB comparisons (Acary, Bremond, Huber 2018), in velocities:
+//   relative = || W_nn (p - max(0, p - v/W_nn)) ||_2 / || v_free ||_2.
+#pragma once
+
+#include "problem.hpp"
+
+namespace nscd {
+
+struct Criterion {
+  double motion = 0;
+  double bipotential = 0;
+  double penetration = 0;
+  double relative = 0;
+  double total() const { return motion + bipotential + penetration; }
+};
+
+// `local_velocity`: the (1 + e) v~ that a local solver carries, one a contact, or nullptr if it carries none.
+Criterion measure(const Problem &problem, const double *local_velocity = nullptr);
+
+}    // namespace nscd

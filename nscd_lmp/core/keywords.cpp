@@ -1,0 +1,99 @@
+// fix nscd's keywords: from words to Settings.
+#include "error.hpp"
+#include "settings.hpp"
+
+#include <charconv>
+#include <functional>
+#include <map>
+
+namespace nscd {
+
+namespace {
+
+// Hands out the words one by one; knows for which keyword a value is missing or malformed.
+class Words {
+ public:
+  explicit Words(const std::vector<std::string> &words) : words_(words) {}
+  bool done() const { return next_ == words_.size(); }
+  const std::string &keyword() { return keyword_ = words_[next_++]; }
+
+  const std::string &word()
+  {
+    if (done()) fail("keyword ", keyword_, " needs a value");
+    return words_[next_++];
+  }
+
+  template <class Number>
+  Number number()
+  {
+    const std::string &text = word();
+    Number value{};
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (problem != std::errc() || end != text.data() + text.size())
+      fail("keyword ", keyword_, ": '", text, "' is not ", std::is_integral_v<Number> ? "a whole number" : "a number");
+    return value;
+  }
+
+  bool yes_or_no()
+  {
+    const std::string &text = word();
+    if (text == "yes" || text == "on" || text == "true") return true;
+    if (text == "no" || text == "off" || text == "false") return false;
+    fail("keyword ", keyword_, ": '", text, "' is neither yes nor no");
+  }
+
+ private:
+  const std::vector<std::string> &words_;
+  std::size_t next_ = 0;
+  std::string keyword_;
+};
+
+Plane read_wall(Words &words)
+{
+  const std::string &kind = words.word();
+  if (kind != "plane") fail("unknown wall '", kind, "': choose plane");
+  Plane plane{};
+  for (double &value : plane.point) value = words.number<double>();
+  for (double &value : plane.normal) value = words.number<double>();
+  return plane;
+}
+
+using Reader = std::function<void(Settings &, Words &)>;
+
+const std::map<std::string, Reader> &readers()
+{
+  static const std::map<std::string, Reader> list{
+      {"solver", [](Settings &s, Words &w) { s.solver = w.word(); }},
+      {"law", [](Settings &s, Words &w) { s.law = w.word(); }},
+      {"restitution", [](Settings &s, Words &w) { s.restitution = w.number<double>(); }},
+      {"tol", [](Settings &s, Words &w) { s.tol = w.number<double>(); }},
+      {"maxiter", [](Settings &s, Words &w) { s.maxiter = w.number<int>(); }},
+      {"warmstart", [](Settings &s, Words &w) { s.warmstart = w.yes_or_no(); }},
+      {"rho", [](Settings &s, Words &w) { s.rho = w.number<double>(); }},
+      {"gamma", [](Settings &s, Words &w) { s.gamma = w.number<double>(); }},
+      {"theta", [](Settings &s, Words &w) { s.theta = w.number<double>(); }},
+      {"recovery", [](Settings &s, Words &w) { s.recovery = w.number<double>(); }},
+      {"wall", [](Settings &s, Words &w) { s.walls.push_back(read_wall(w)); }},
+      {"unconverged", [](Settings &s, Words &w) { s.unconverged = parse_unconverged(w.word()); }},
+  };
+  return list;
+}
+
+}    // namespace
+
+void parse_keywords(Settings &settings, const std::vector<std::string> &words)
+{
+  Words rest(words);
+  while (!rest.done()) {
+    const std::string keyword = rest.keyword();
+    const auto reader = readers().find(keyword);
+    if (reader == readers().end()) {
+      std::string choices;
+      for (const auto &[known, unused] : readers()) choices += (choices.empty() ? "" : ", ") + known;
+      fail("unknown keyword '", keyword, "': choose one of ", choices);
+    }
+    reader->second(settings, rest);
+  }
+}
+
+}    // namespace nscd

@@ -1,0 +1,45 @@
+// The contact law of the time-stepping scheme: where contacts are sought, what velocity they must respect,
+// and how grains move. One file each in law/; they register themselves as solvers do.
+//
+// Not to be confused with the local laws in local/, which are ways to solve one contact.
+#pragma once
+
+#include "state.hpp"
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+namespace nscd {
+
+class Law {
+ public:
+  virtual ~Law() = default;
+  // Contacts are sought at q_k + prediction dt v_k.
+  virtual double prediction(const Settings &) const { return 0; }
+  // Whether contacts are sought ahead, within dt times the speeds, or only where spheres touch.
+  virtual bool looks_ahead() const { return false; }
+  // Fills the biases of the contacts from `first` on. Bodies have the velocities without these contacts,
+  // state.grains.v has v_k.
+  virtual void set_bias(State &, std::size_t first) = 0;
+  // After a solve: true if the law changed biases because of it, and the problem must be solved again.
+  virtual bool revise(State &) { return false; }
+  // Fills state.displacement, from where contacts were sought to q_{k+1}; bodies have v_{k+1}.
+  virtual void displace(State &) = 0;
+};
+
+struct LawEntry {
+  int order;
+  std::string_view name;
+  std::string_view title;
+  std::unique_ptr<Law> (*make)();
+};
+
+const std::vector<LawEntry> &laws();
+const LawEntry &find_law(std::string_view name);    // Raises Error naming the choices.
+
+struct RegisterLaw {
+  explicit RegisterLaw(const LawEntry &entry);
+};
+
+}    // namespace nscd

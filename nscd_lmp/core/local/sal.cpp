@@ -1,0 +1,26 @@
+// SAL: standard augmented Lagrangian, one projected gradient step a visit
+// (Barboteu & Dumont 2017, section 4.1, equations (23)-(25); Alart & Curnier 1991).
+//
+//   tau = p - rho v~,   p <- proj(tau, R+ x B(0, mu p))
+//
+// Makes exact: p in the half-cylinder. Convergence as SBP: a factor |1 - rho W~_nn| a visit on its own contact;
+// the default rho = 4/9 of 1/W~_nn has the same reason. Fails: diverges for rho >= 2/W~_nn, crawls for small.
+// Without friction the half-cylinder is a half-line, and SAL's iterates are SBP's.
+#include "../nlgs.hpp"
+
+#include <algorithm>
+
+namespace nscd {
+
+struct Sal {
+  static constexpr bool carries_velocity = false;
+  static Local visit(Local now, double v, double w_inverse, double rho)
+  {
+    const double augmented = now.impulse - rho * w_inverse * v;
+    return {std::max(0.0, augmented), 0.0};
+  }
+};
+
+static const RegisterSolver sal({20, "sal", "SAL", "rho", 4.0 / 9.0, nlgs<Sal>});
+
+}    // namespace nscd

@@ -1,0 +1,19 @@
+// The velocity-level contact problem of one step, equation (17): what every solver is handed.
+#pragma once
+
+#include "contact.hpp"
+
+#include <span>
+#include <vector>
+
+namespace nscd {
+
+struct Problem {
+  std::span<Body> bodies;       // in: free velocities plus what the impulses on entry gave them; out: solution
+  std::span<Contact> contacts;  // in: start impulses; out: solution
+  double restitution = 0;       // e of (21); scales v to v~ = v / (1 + e) in the criterion
+  double free_norm = 0;         // ||v_free + bias||_2 over the contacts, the scale of the relative residual, m/s
+  std::vector<double> &workspace;  // the solver's own unknowns; kept between steps, so a steady step allocates nothing
+};
+
+}    // namespace nscd

@@ -1,0 +1,69 @@
+#include "settings.hpp"
+
+#include "error.hpp"
+#include "law.hpp"
+#include "solver.hpp"
+
+namespace nscd {
+
+Unconverged parse_unconverged(const std::string &word)
+{
+  for (const auto policy : {Unconverged::ignore, Unconverged::warn, Unconverged::error})
+    if (word == name(policy)) return policy;
+  fail("unknown unconverged policy '", word, "': choose one of ignore, warn, error");
+}
+
+const char *name(Unconverged policy)
+{
+  switch (policy) {
+    case Unconverged::ignore: return "ignore";
+    case Unconverged::warn: return "warn";
+    case Unconverged::error: return "error";
+  }
+  return "";
+}
+
+static void require_range(const char *what, double value, double lo, double hi)
+{
+  if (!(value >= lo && value <= hi))
+    fail(what, " = ", value, " is outside [", lo, ", ", hi, "]");
+}
+
+static void check_parameter(const char *keyword, double value, const SolverEntry &solver)
+{
+  if (std::isnan(value)) return;
+  if (!(value > 0 && std::isfinite(value)))
+    fail(keyword, " = ", value, " must be > 0: it is a multiple of 1/W_nn, and the default is a good start");
+  if (solver.parameter != keyword)
+    fail("keyword ", keyword, " is not a parameter of solver ", solver.name, ", which takes ", solver.parameter);
+}
+
+static void normalise(Plane &wall, std::size_t index)
+{
+  double *n = wall.normal;
+  const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  for (double component : {length, wall.point[0], wall.point[1], wall.point[2]})
+    if (!std::isfinite(component))
+      fail("wall ", index + 1, ": point and normal must be finite numbers");
+  if (!(length > 0))
+    fail("wall ", index + 1, ": the normal is (0, 0, 0); give a vector that points into the free side");
+  for (int d = 0; d < 3; ++d) n[d] /= length;
+}
+
+Settings checked(Settings s)
+{
+  const SolverEntry &solver = find_solver(s.solver);
+  find_law(s.law);
+  require_range("restitution", s.restitution, 0, 1);
+  require_range("theta", s.theta, 0, 1);
+  require_range("recovery", s.recovery, 0, 1);
+  if (!(s.tol > 0 && std::isfinite(s.tol)))
+    fail("tol = ", s.tol, " must be > 0: it is the value of criterion (42), m/s, at which a step is solved");
+  if (s.maxiter < 1) fail("maxiter = ", s.maxiter, " must be at least 1");
+  check_parameter("rho", s.rho, solver);
+  check_parameter("gamma", s.gamma, solver);
+  for (std::size_t k = 0; k < s.walls.size(); ++k) normalise(s.walls[k], k);
+  return s;
+}
+
+}    // namespace nscd

@@ -1,0 +1,41 @@
+// What the user chooses, and the checks on it: one place for both doors.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace nscd {
+
+// Half-space obstacle: `point` on the plane, `normal` into the free side (any length; made unit by Settings).
+struct Plane {
+  double point[3];
+  double normal[3];
+};
+
+enum class Unconverged { ignore, warn, error };
+Unconverged parse_unconverged(const std::string &word);
+const char *name(Unconverged policy);
+
+struct Settings {
+  std::string solver = "pdas";
+  std::string law = "gap";
+  double restitution = 0;        // Newton's e, 0..1
+  double tol = 1e-7;             // on criterion (42)
+  int maxiter = 1000;
+  bool warmstart = true;
+  double rho = NAN;              // multiple of 1/W_nn; NAN: the solver's own default
+  double gamma = NAN;
+  double theta = 0.5;            // law moreau
+  double recovery = 0.2;         // law gap: share of an overlap given back per step, speed-limited
+  Unconverged unconverged = Unconverged::warn;
+  std::vector<Plane> walls;
+};
+
+// Reads `keyword value ...` as fix nscd takes them; raises Error for an unknown keyword or a value that is no number.
+void parse_keywords(Settings &settings, const std::vector<std::string> &words);
+
+// Raises Error (value, limit, remedy) for anything out of range; normalises the walls' normals.
+Settings checked(Settings settings);
+
+}    // namespace nscd

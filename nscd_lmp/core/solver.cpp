@@ -1,0 +1,19 @@
+#include "solver.hpp"
+
+#include "registry.hpp"
+
+namespace nscd {
+
+static Registry<SolverEntry> &registry()
+{
+  static Registry<SolverEntry> list;
+  return list;
+}
+
+RegisterSolver::RegisterSolver(const SolverEntry &entry) { registry().add(entry); }
+
+const std::vector<SolverEntry> &solvers() { return registry().entries(); }
+
+const SolverEntry &find_solver(std::string_view name) { return registry().find("solver", name); }
+
+}    // namespace nscd

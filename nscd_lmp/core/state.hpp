@@ -1,0 +1,46 @@
+// Everything one step works on: the arrays it was handed, and its own, kept from step to step.
+#pragma once
+
+#include "contact.hpp"
+#include "settings.hpp"
+#include "views.hpp"
+
+#include <vector>
+
+namespace nscd {
+
+// Centre and radius of an atom where contacts are sought; `reach` widens the search, 0 for law moreau.
+struct Sphere {
+  Vec4 centre;  // fourth component 0
+  double radius;
+  double reach;
+};
+
+// A pair, or an atom and wall -1 - atom_j, too far apart for a contact but near enough to watch.
+struct NearPair {
+  int atom_i, atom_j;
+};
+
+struct State {
+  const Settings &settings;
+  Grains grains;
+  double dt = 0;
+
+  std::vector<Sphere> spheres;      // (owned + ghosts)
+  std::vector<int> owner;           // (owned + ghosts) index of the body that an atom is (an image of)
+  std::vector<Body> bodies;         // (owned + obstacle_copies)
+  std::vector<Contact> contacts;
+  std::vector<ContactInfo> infos;   // beside contacts
+  std::vector<NearPair> near;       // watched by law gap: made contacts if the solution drives them together
+  std::vector<Vec4> displacement;   // (owned) from where contacts were sought to q_{k+1}
+
+  double free_norm = 0;             // ||v_free + bias||_2 over the contacts, m/s
+  double watch = 0;                 // surface distance within which pairs are watched, m
+  double smooth_kick = 0;           // largest |dt f / m| of the step, m/s
+};
+
+// Walls are bodies of infinite mass. Several copies, used in turn: consecutive wall contacts then do not wait
+// for each other's store to the same body.
+constexpr int obstacle_copies = 16;
+
+}    // namespace nscd

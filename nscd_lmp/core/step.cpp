@@ -1,0 +1,252 @@
+#include "step.hpp"
+
+#include "detection.hpp"
+#include "error.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace nscd {
+
+// Impulses can make a grain faster than any was: watch pairs within this many moves of the fastest.
+constexpr double watched_moves = 4;
+
+using Clock = std::chrono::steady_clock;
+
+static double seconds(Clock::time_point from, Clock::time_point to)
+{
+  return std::chrono::duration<double>(to - from).count();
+}
+
+Step::Step(const Settings &settings, CustomSolver custom) :
+    settings_(checked(settings)), solver_(&find_solver(settings_.solver)), custom_(std::move(custom)),
+    law_(find_law(settings_.law).make()), state_{.settings = settings_, .grains = {}}
+{
+  options_.tol = settings_.tol;
+  options_.maxiter = settings_.maxiter;
+  const double given = solver_->parameter == "rho" ? settings_.rho : settings_.gamma;
+  options_.parameter = std::isnan(given) ? solver_->default_parameter : given;
+}
+
+void Step::begin_run() { report_ = {}; }
+
+const StepReport &Step::advance(const Grains &grains, const PairList &pairs, double dt)
+{
+  const auto start = Clock::now();
+  state_.dt = dt;
+  gather(grains);
+  check_reach(pairs);
+  detect(state_, pairs);
+  const auto detected = Clock::now();
+  solve();
+  const auto solved = Clock::now();
+  finish();
+  write_back(pairs);
+  report_.seconds_contacts = seconds(start, detected) + seconds(solved, Clock::now());
+  report_.seconds_solver = seconds(detected, solved);
+  return report_;
+}
+
+// Free velocity (14) and predicted centre (18) of one grain.
+void Step::load_body(int i, double &largest_kick, double &largest_speed)
+{
+  const Grains &g = state_.grains;
+  const double *x = g.x + 3 * std::size_t(i), *v = g.v + 3 * std::size_t(i), *f = g.f + 3 * std::size_t(i);
+  const bool moves = g.mask[i] & g.group;
+  const double inverse_mass = moves ? 1 / g.mass[i] : 0;
+  const Vec4 before{v[0], v[1], v[2], 0};
+  const Vec4 kick = Vec4{f[0], f[1], f[2], 0} * (state_.dt * g.force_to_acceleration * inverse_mass);
+  const Vec4 free = before + kick;
+  const double kick2 = dot(kick, kick), speed2 = std::max(dot(before, before), dot(free, free));
+  largest_kick = std::max(largest_kick, kick2);
+  largest_speed = std::max(largest_speed, speed2);
+  const Vec4 centre = Vec4{x[0], x[1], x[2], 0} + before * (moves ? state_.dt * law_->prediction(settings_) : 0.0);
+  const double reach = law_->looks_ahead() ? state_.dt * std::sqrt(speed2) : 0;
+  state_.spheres[i] = {centre, g.radius[i], reach};
+  state_.bodies[i] = free + Vec4{0, 0, 0, inverse_mass};
+  if (!(std::isfinite(dot(centre, centre)) && std::isfinite(speed2)))
+    fail("grain ", g.tag[i], " has a position, velocity or force that is not a finite number");
+  if (!(g.radius[i] > 0)) fail("grain ", g.tag[i], " has radius ", g.radius[i], ": nscd needs spheres of radius > 0");
+  if (moves && !(g.mass[i] > 0 && std::isfinite(g.mass[i])))
+    fail("grain ", g.tag[i], " has mass ", g.mass[i], ": every grain of the group needs a mass > 0");
+}
+
+void Step::gather(const Grains &grains)
+{
+  state_.grains = grains;
+  const int owned = grains.owned, all = owned + grains.ghosts;
+  state_.spheres.resize(all);
+  state_.owner.resize(all);
+  state_.bodies.resize(owned + obstacle_copies);
+  state_.displacement.resize(owned);
+  double kick2 = 0, speed2 = 0;
+  for (int i = 0; i < owned; ++i) {
+    load_body(i, kick2, speed2);
+    state_.owner[i] = i;
+  }
+  std::fill(state_.bodies.begin() + owned, state_.bodies.end(), Body{});
+  state_.smooth_kick = std::sqrt(kick2);
+  state_.watch = law_->looks_ahead() ? watched_moves * state_.dt * std::sqrt(speed2) : 0;
+  largest_speed_ = std::sqrt(speed2);
+  find_owners();
+}
+
+// On one rank the grain of every image is at home: images take its velocity, so ghosts need none of their own.
+void Step::find_owners()
+{
+  const Grains &g = state_.grains;
+  if (g.ghosts == 0) return;
+  by_tag_.resize(g.owned);
+  for (int i = 0; i < g.owned; ++i) by_tag_[i] = {g.tag[i], i};
+  std::sort(by_tag_.begin(), by_tag_.end());
+  for (int j = g.owned; j < g.owned + g.ghosts; ++j) {
+    const auto at = std::lower_bound(by_tag_.begin(), by_tag_.end(), std::pair<std::int32_t, int>{g.tag[j], 0});
+    if (at == by_tag_.end() || at->first != g.tag[j]) fail("image of grain ", g.tag[j], " has no grain on this rank");
+    const int i = state_.owner[j] = at->second;
+    const double *xi = g.x + 3 * std::size_t(i), *xj = g.x + 3 * std::size_t(j);
+    const Vec4 shift{xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2], 0};
+    state_.spheres[j] = {state_.spheres[i].centre + shift, g.radius[i], state_.spheres[i].reach};
+  }
+}
+
+void Step::check_reach(const PairList &pairs)
+{
+  const double needed = 2 * state_.dt * largest_speed_;
+  if (needed > pairs.reach)
+    fail("grains can meet over ", needed, " in one step (2 dt v, v = ", largest_speed_,
+         ") but pairs are listed only up to a surface distance of ", pairs.reach,
+         ": contacts could be missed; use a smaller timestep, a larger neighbor skin or a larger pair_style cutoff");
+}
+
+// Biases and start impulses of the contacts from `first` on.
+void Step::start_contacts(std::size_t first)
+{
+  law_->set_bias(state_, first);
+  double norm = first == 0 ? 0 : state_.free_norm * state_.free_norm;
+  for (std::size_t k = first; k < state_.contacts.size(); ++k) {
+    const Contact &c = state_.contacts[k];
+    const double v = normal_velocity(c, state_.bodies.data()) + c.bias;
+    norm += v * v;
+  }
+  state_.free_norm = std::sqrt(norm);
+  if (!settings_.warmstart) return;
+  for (std::size_t k = first; k < state_.contacts.size(); ++k) {
+    Contact &c = state_.contacts[k];
+    c.impulse = memory_.recall(state_.infos[k].key);
+    if (c.impulse != 0) apply_impulse(c, c.impulse, state_.bodies.data());
+  }
+}
+
+void Step::ask_custom()
+{
+  workspace_.resize(state_.contacts.size());
+  for (std::size_t k = 0; k < workspace_.size(); ++k) workspace_[k] = state_.contacts[k].impulse;
+  custom_(state_, workspace_);
+  for (std::size_t k = 0; k < workspace_.size(); ++k) {
+    Contact &c = state_.contacts[k];
+    apply_impulse(c, workspace_[k] - c.impulse, state_.bodies.data());
+    c.impulse = workspace_[k];
+  }
+}
+
+void Step::solve_once()
+{
+  Problem problem{state_.bodies, state_.contacts, settings_.restitution, state_.free_norm, workspace_};
+  SolverReport solved;
+  if (custom_) {
+    ask_custom();
+    solved.iterations = 1;
+    solved.criterion = measure(problem);
+    solved.converged = solved.criterion.total() < settings_.tol;
+  } else {
+    solved = solver_->solve(problem, options_);
+  }
+  if (!std::isfinite(solved.criterion.total()))
+    fail("solver ", settings_.solver, " diverged: the criterion is not a number; take rho or gamma closer to its default");
+  report_.iterations += solved.iterations;
+  report_.criterion = solved.criterion;
+  report_.converged = solved.converged;
+}
+
+// The contact set grows while the solution drives watched pairs together; that ends, for lack of pairs.
+void Step::solve()
+{
+  report_.iterations = 0;
+  std::size_t first = 0;
+  do {
+    start_contacts(first);
+    do solve_once();
+    while (law_->revise(state_));
+    law_->displace(state_);
+    first = state_.contacts.size();
+  } while (promote_near(state_) > 0);
+  report_.contacts = int(state_.contacts.size());
+  if (report_.converged) return;
+  if (settings_.unconverged == Unconverged::error)
+    fail("step not solved: criterion (42) is ", report_.criterion.total(), " after ", report_.iterations,
+         " iterations, tol is ", settings_.tol, ": raise maxiter or tol, or use `unconverged warn`");
+  ++report_.unconverged;
+}
+
+void Step::finish()
+{
+  tally_contacts();
+  if (settings_.warmstart) memory_.remember(state_.contacts, state_.infos);
+}
+
+// Overlap at q_{k+1}, and the energy the contacts took: -sum p (v_n^k + v_n^{k+1}) / 2, exact for any step.
+void Step::tally_contacts()
+{
+  const State &s = state_;
+  double overlap = 0, ratio = 0, work = 0;
+  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
+    const Contact &c = s.contacts[k];
+    ContactInfo &info = state_.infos[k];
+    work += c.impulse * (info.speed_before + normal_velocity(c, s.bodies.data()));
+    const Sphere &a = s.spheres[info.atom_i];
+    Vec4 separation = a.centre + s.displacement[c.i];
+    double smaller = a.radius;
+    if (info.atom_j >= 0) {
+      const Sphere &b = s.spheres[info.atom_j];
+      separation -= b.centre + s.displacement[c.j];
+      info.gap = std::sqrt(dot(separation, separation)) - a.radius - b.radius;
+      smaller = std::min(smaller, b.radius);
+    } else {
+      info.gap += dot(c.normal, s.displacement[c.i]);
+    }
+    overlap = std::max(overlap, -info.gap);
+    ratio = std::max(ratio, -info.gap / smaller);
+  }
+  report_.largest_overlap = overlap;
+  report_.largest_overlap_ratio = ratio;
+  report_.dissipated -= 0.5 * work;
+}
+
+void Step::write_back(const PairList &pairs)
+{
+  const Grains &g = state_.grains;
+  double fastest2 = 0, farthest2 = 0;
+  for (int i = 0; i < g.owned; ++i) {
+    const Body &b = state_.bodies[i];
+    if (b[3] == 0) continue;
+    double *x = g.x + 3 * std::size_t(i), *v = g.v + 3 * std::size_t(i), *f = g.f + 3 * std::size_t(i);
+    const Vec4 moved = state_.spheres[i].centre + state_.displacement[i];
+    const double per_force = state_.dt * g.force_to_acceleration * b[3];
+    double move2 = 0;
+    for (int d = 0; d < 3; ++d) {
+      const double free = v[d] + f[d] * per_force;
+      move2 += (moved[d] - x[d]) * (moved[d] - x[d]);
+      f[d] = (b[d] - free) / per_force;
+      x[d] = moved[d];
+      v[d] = b[d];
+    }
+    farthest2 = std::max(farthest2, move2);
+    fastest2 = std::max(fastest2, b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
+  }
+  travel_ = (pairs.just_built ? 0 : travel_) + std::sqrt(farthest2);
+  const double next = state_.dt * (std::sqrt(fastest2) + state_.smooth_kick);
+  wants_rebuild_ = 2 * (travel_ + next) > pairs.reach;
+}
+
+}    // namespace nscd

@@ -1,0 +1,81 @@
+// One step of the scheme: arrays in, contacts, solver, arrays out. Both doors call this and nothing beneath it.
+#pragma once
+
+#include "impulse_memory.hpp"
+#include "law.hpp"
+#include "solver.hpp"
+#include "state.hpp"
+
+#include <functional>
+#include <memory>
+#include <span>
+
+namespace nscd {
+
+// What a step reports; the columns of the stats table and of fix nscd's vector.
+struct StepReport {
+  int contacts = 0;
+  int iterations = 0;
+  Criterion criterion;
+  double largest_overlap = 0;        // m, at q_{k+1}
+  double largest_overlap_ratio = 0;  // over the smaller radius of the pair
+  double dissipated = 0;             // J, by contacts since begin_run
+  long unconverged = 0;              // steps since begin_run
+  bool converged = true;
+  double seconds_contacts = 0;       // detection, biases, update
+  double seconds_solver = 0;
+};
+
+class Step {
+ public:
+  // Takes the place of the built-in solver: reads the problem, overwrites the start impulses (N s, a contact each).
+  using CustomSolver = std::function<void(const State &, std::span<double>)>;
+
+  // Raises Error for bad settings.
+  explicit Step(const Settings &settings, CustomSolver custom = {});
+  Step(const Step &) = delete;
+  Step &operator=(const Step &) = delete;
+
+  // Energy and unconverged steps count from here.
+  void begin_run();
+
+  // One step of length dt (s). Raises Error and leaves the arrays as they were if the input is bad, a contact
+  // can be missed, or the step does not converge under `unconverged error`.
+  const StepReport &advance(const Grains &grains, const PairList &pairs, double dt);
+
+  const StepReport &report() const { return report_; }
+  const Settings &settings() const { return settings_; }
+  const State &state() const { return state_; }
+
+  // True if the next step needs a fresh neighbor list to be sure of every contact.
+  bool wants_rebuild() const { return wants_rebuild_; }
+
+ private:
+  void gather(const Grains &grains);
+  void load_body(int i, double &largest_kick, double &largest_speed);
+  void find_owners();
+  void check_reach(const PairList &pairs);
+  void start_contacts(std::size_t first);
+  void solve();
+  void solve_once();
+  void ask_custom();
+  void finish();
+  void tally_contacts();
+  void write_back(const PairList &pairs);
+
+  const Settings settings_;
+  const SolverEntry *solver_;
+  CustomSolver custom_;
+  std::unique_ptr<Law> law_;
+  State state_;
+  ImpulseMemory memory_;
+  SolverOptions options_;
+  std::vector<double> workspace_;
+  std::vector<std::pair<std::int32_t, int>> by_tag_;
+  StepReport report_;
+  double largest_speed_ = 0;   // m/s, before or after the smooth forces
+  double travel_ = 0;          // m, the farthest a grain may have moved since the list was built
+  bool wants_rebuild_ = false;
+};
+
+}    // namespace nscd

@@ -1,0 +1,36 @@
+// The arrays that the core is handed each step. It owns none of them and knows nothing of where they come from.
+#pragma once
+
+#include <cstdint>
+
+namespace nscd {
+
+// All atoms of one rank: indices 0..owned-1 are integrated here, owned..owned+ghosts-1 are periodic images.
+// Units are any consistent set (LAMMPS `units si`: m, kg, s, N).
+struct Grains {
+  int owned = 0;
+  int ghosts = 0;
+  double *x = nullptr;             // (owned + ghosts, 3), in: q_k; out: q_{k+1} (owned only)
+  double *v = nullptr;             // (owned, 3), in: v_k; out: v_{k+1}
+  double *f = nullptr;             // (owned, 3), in: smooth forces; out: mean contact force of the step
+  const double *radius = nullptr;  // (owned + ghosts)
+  const double *mass = nullptr;    // (owned)
+  const std::int32_t *tag = nullptr;   // (owned + ghosts), unique per grain; an image has its grain's
+  const int *mask = nullptr;       // (owned)
+  int group = 1;                   // an atom moves if mask & group; the others are obstacles of infinite mass
+  double force_to_acceleration = 1;  // LAMMPS' ftm2v
+};
+
+// Half neighbor list in LAMMPS' layout; the top three bits of a neighbor index are flags.
+struct PairList {
+  int count = 0;
+  const int *atom = nullptr;             // (count) index of atom i
+  const int *neighbors = nullptr;        // (count) how many
+  const int *const *first = nullptr;     // (count) per entry: pointer to the neighbor indices
+  bool cross_pairs_twice = false;        // newton off: a pair with an image is listed from both sides
+  double reach = 0;                      // surface distance up to which all pairs were listed when it was built
+  bool just_built = false;               // built in this step
+};
+constexpr int neighbor_index_mask = 0x1FFFFFFF;
+
+}    // namespace nscd

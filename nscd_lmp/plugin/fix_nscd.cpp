@@ -1,0 +1,213 @@
+#include "fix_nscd.hpp"
+
+#include "../core/error.hpp"
+#include "../core/report.hpp"
+
+#include <atom.h>
+#include <comm.h>
+#include <domain.h>
+#include <error.h>
+#include <force.h>
+#include <modify.h>
+#include <neigh_list.h>
+#include <neighbor.h>
+#include <output.h>
+#include <update.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+using namespace LAMMPS_NS;
+using namespace FixConst;
+
+namespace {
+
+// Runs `body`; what the core refuses ends the LAMMPS run with the core's own words.
+template <class Body>
+auto or_stop(Error *error, const char *id, Body body)
+{
+  try {
+    return body();
+  } catch (const nscd::Error &refused) {
+    error->all(FLERR, std::string("Fix nscd ") + id + ": " + refused.what());
+  }
+}
+
+}    // namespace
+
+FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+{
+  time_integrate = 1;
+  force_reneighbor = 1;
+  next_reneighbor = -1;
+  scalar_flag = vector_flag = local_flag = 1;
+  size_vector = nscd::report_columns;
+  size_local_rows = 0;
+  size_local_cols = nscd::contact_columns;
+  global_freq = local_freq = 1;
+  extscalar = extvector = 0;
+
+  nscd::Settings settings;
+  or_stop(error, id, [&] {
+    parse(settings, narg, arg);
+    step_ = std::make_unique<nscd::Step>(settings);
+  });
+}
+
+FixNscd::~FixNscd() = default;
+
+void FixNscd::parse(nscd::Settings &settings, int narg, char **arg)
+{
+  std::vector<std::string> words(arg + 3, arg + narg);
+  nscd::parse_keywords(settings, words);
+}
+
+int FixNscd::setmask() { return FINAL_INTEGRATE | POST_RUN; }
+
+void FixNscd::check_atoms()
+{
+  if (!atom->radius_flag)
+    error->all(FLERR, "Fix nscd {}: atoms have no radius: use atom_style sphere", id);
+  if (!atom->tag_enable) error->all(FLERR, "Fix nscd {}: atoms have no IDs: use atom_modify id yes", id);
+  if (comm->nprocs > 1)
+    error->all(FLERR, "Fix nscd {} runs on one MPI rank, this run has {}: start LAMMPS on one rank", id,
+               comm->nprocs);
+  if (utils::strmatch(update->integrate_style, "^respa"))
+    error->all(FLERR, "Fix nscd {} needs run_style verlet", id);
+}
+
+void FixNscd::check_integrators()
+{
+  for (Fix *other : modify->get_fix_list()) {
+    if (other == this || !other->time_integrate) continue;
+    for (int i = 0; i < atom->nlocal; ++i)
+      if ((atom->mask[i] & groupbit) && (atom->mask[i] & other->groupbit))
+        error->all(FLERR,
+                   "Fix nscd {}: atom {} is moved by fix {} (style {}) too: remove that fix or give the two "
+                   "disjoint groups",
+                   id, atom->tag[i], other->id, other->style);
+  }
+}
+
+// The contact pairs come from the pair style's list: with pair_style zero it costs nothing more.
+void FixNscd::find_list()
+{
+  list_ = force->pair ? neighbor->find_list(force->pair) : nullptr;
+  if (!list_)
+    error->all(FLERR,
+               "Fix nscd {} needs the neighbor list of a pair style: use pair_style zero CUTOFF with a cutoff of the "
+               "largest diameter plus what two grains can move in a step",
+               id);
+}
+
+void FixNscd::init()
+{
+  check_atoms();
+  check_integrators();
+  rows_every_step_ = false;
+  for (Fix *other : modify->get_fix_list())
+    if (utils::strmatch(other->style, "^ave/") || utils::strmatch(other->style, "^vector")) rows_every_step_ = true;
+}
+
+void FixNscd::setup(int /*vflag*/)
+{
+  find_list();
+  step_->begin_run();
+  steps_ = 0;
+  if (comm->me == 0)
+    utils::logmesg(lmp, "fix nscd {}: {}\n", id, nscd::describe(step_->settings()));
+}
+
+// Surface distance up to which all pairs were listed at the last build: over the type pairs, cutoff + skin less
+// the largest radii of the two types.
+void FixNscd::measure_list_reach()
+{
+  const int types = atom->ntypes;
+  std::vector<double> largest(types + 1, 0);
+  for (int i = 0; i < atom->nlocal; ++i)
+    largest[atom->type[i]] = std::max(largest[atom->type[i]], atom->radius[i]);
+  list_reach_ = INFINITY;
+  for (int a = 1; a <= types; ++a)
+    for (int b = a; b <= types; ++b)
+      if (largest[a] > 0 && largest[b] > 0)
+        list_reach_ = std::min(list_reach_, std::sqrt(neighbor->cutneighsq[a][b]) - largest[a] - largest[b]);
+}
+
+nscd::Grains FixNscd::grains()
+{
+  nscd::Grains g;
+  g.owned = atom->nlocal;
+  g.ghosts = atom->nghost;
+  g.x = atom->nlocal ? atom->x[0] : nullptr;
+  g.v = atom->nlocal ? atom->v[0] : nullptr;
+  g.f = atom->nlocal ? atom->f[0] : nullptr;
+  g.radius = atom->radius;
+  g.mass = atom->rmass;
+  if (!atom->rmass) {
+    masses_.resize(atom->nlocal);
+    for (int i = 0; i < atom->nlocal; ++i) masses_[i] = atom->mass[atom->type[i]];
+    g.mass = masses_.data();
+  }
+  g.tag = atom->tag;
+  g.mask = atom->mask;
+  g.group = groupbit;
+  g.force_to_acceleration = force->ftm2v;
+  return g;
+}
+
+nscd::PairList FixNscd::pairs()
+{
+  nscd::PairList p;
+  p.count = list_->inum;
+  p.atom = list_->ilist;
+  p.neighbors = list_->numneigh;
+  p.first = list_->firstneigh;
+  p.cross_pairs_twice = !force->newton_pair;
+  p.just_built = neighbor->ago == 0;
+  if (p.just_built || list_reach_ == 0) measure_list_reach();
+  p.reach = list_reach_;
+  return p;
+}
+
+void FixNscd::final_integrate()
+{
+  if (atom->nlocal != atom->natoms)
+    error->all(FLERR, "Fix nscd {}: {} of {} grains left the box: close it with wall planes or boundary s or m", id,
+               atom->natoms - atom->nlocal, atom->natoms);
+  or_stop(error, id, [&] { step_->advance(grains(), pairs(), update->dt); });
+  ++steps_;
+  next_reneighbor = step_->wants_rebuild() ? update->ntimestep + 1 : -1;
+  if (local_rows_wanted()) fill_local();
+}
+
+void FixNscd::post_run()
+{
+  const auto &report = step_->report();
+  if (report.unconverged == 0 || step_->settings().unconverged != nscd::Unconverged::warn) return;
+  error->warning(FLERR, "Fix nscd {}: {} of {} steps ended above tol {}: raise maxiter (now {}) or tol", id,
+                 report.unconverged, steps_, step_->settings().tol, step_->settings().maxiter);
+}
+
+bool FixNscd::local_rows_wanted() const { return rows_every_step_ || output->next == update->ntimestep; }
+
+void FixNscd::fill_local()
+{
+  const int rows = step_->report().contacts;
+  constexpr int columns = nscd::contact_columns;
+  local_values_.resize(std::size_t(rows) * columns);
+  nscd::fill_contact_rows(step_->state(), local_values_.data());
+  local_rows_.resize(std::max(rows, 1));
+  for (int r = 0; r < rows; ++r) local_rows_[r] = local_values_.data() + std::size_t(r) * columns;
+  array_local = local_rows_.data();
+  size_local_rows = rows;
+}
+
+double FixNscd::compute_scalar() { return step_->report().iterations; }
+
+double FixNscd::compute_vector(int n) { return nscd::report_column(step_->report(), n); }
+
+double FixNscd::memory_usage()
+{
+  return double(step_->state().contacts.capacity()) * (sizeof(nscd::Contact) + sizeof(nscd::ContactInfo));
+}

@@ -1,0 +1,46 @@
+// fix nscd: the script door. LAMMPS arrays in, velocities out; no numerics.
+#pragma once
+
+#include "../core/step.hpp"
+
+#include <fix.h>
+
+#include <memory>
+
+namespace LAMMPS_NS {
+
+class FixNscd : public Fix {
+ public:
+  FixNscd(LAMMPS *lmp, int narg, char **arg);
+  ~FixNscd() override;
+  int setmask() override;
+  void init() override;
+  void setup(int vflag) override;
+  void final_integrate() override;
+  void post_run() override;
+  double compute_scalar() override;
+  double compute_vector(int n) override;
+  double memory_usage() override;
+
+ private:
+  void parse(nscd::Settings &settings, int narg, char **arg);
+  void check_atoms();
+  void check_integrators();
+  void measure_list_reach();
+  void find_list();
+  nscd::Grains grains();
+  nscd::PairList pairs();
+  void fill_local();
+  bool local_rows_wanted() const;
+
+  std::unique_ptr<nscd::Step> step_;
+  class NeighList *list_ = nullptr;
+  std::vector<double> masses_;          // per owned atom, where masses are per type
+  std::vector<double> local_values_;
+  std::vector<double *> local_rows_;
+  double list_reach_ = 0;
+  bool rows_every_step_ = false;
+  bigint steps_ = 0;
+};
+
+}    // namespace LAMMPS_NS
