@@ -42,18 +42,18 @@ void ExternalFix::advance()
   if (library_.get_thermo(library_.handle, "elapsed") == 0) {
     require_atoms();
     find_list();
-    step_.begin_run();
+    step_.begin_run(setting("neigh_ago") == 0);
     return;
   }
   const Grains g = grains();
   step_.advance(g, pairs(g), *library_.global<double>("dt"));
-  force_rebuild(step_.wants_rebuild());
   record(timestep());
 }
 
+int ExternalFix::setting(const char *name) const { return library_.extract_setting(library_.handle, name); }
+
 void ExternalFix::require_atoms() const
 {
-  const auto setting = [this](const char *name) { return library_.extract_setting(library_.handle, name); };
   if (setting("radius_flag") != 1) fail("atoms have no radius: use atom_style sphere");
   if (setting("tagint") != 4) fail("this LAMMPS was built with 64-bit atom IDs; nscd needs 32-bit ones");
   if (setting("world_size") != 1)
@@ -71,8 +71,8 @@ std::int64_t ExternalFix::timestep() const { return *library_.global<std::int64_
 Grains ExternalFix::grains()
 {
   Grains g;
-  g.owned = library_.extract_setting(library_.handle, "nlocal");
-  g.ghosts = library_.extract_setting(library_.handle, "nghost");
+  g.owned = setting("nlocal");
+  g.ghosts = setting("nghost");
   const double natoms = library_.get_natoms(library_.handle);
   if (g.owned != natoms)
     fail(natoms - g.owned, " of ", natoms, " grains left the box: close it with wall planes or boundary s or m");
@@ -108,22 +108,12 @@ PairList ExternalFix::pairs(const Grains &g)
   p.atom = atoms_.data();
   p.neighbors = counts_.data();
   p.first = first_.data();
-  p.cross_pairs_twice = library_.extract_setting(library_.handle, "newton_pair") == 0;
-  p.just_built = *library_.global<int>("neigh_ago") == 0;
+  p.cross_pairs_twice = setting("newton_pair") == 0;
+  p.just_built = setting("neigh_ago") == 0;
   if (p.just_built || largest_radius_ == 0)
     largest_radius_ = g.owned ? *std::max_element(g.radius, g.radius + g.owned) : 0;
   p.reach = cutoff_ - 2 * largest_radius_;
   return p;
-}
-
-// A fix external cannot ask for a new list, but LAMMPS builds one at the next step while its distance check is off.
-void ExternalFix::force_rebuild(bool wanted)
-{
-  int *const check = library_.global<int>("neigh_dist_check");
-  if (wanted && !forced_) kept_check_ = *check;
-  if (wanted) *check = 0;
-  else if (forced_) *check = kept_check_;
-  forced_ = wanted;
 }
 
 void ExternalFix::record(std::int64_t timestep)

@@ -41,11 +41,11 @@ class ExternalFix {
  private:
   void advance();
   void guarded();
+  int setting(const char *name) const;
   void require_atoms() const;
   void find_list();
   Grains grains();
   PairList pairs(const Grains &grains);
-  void force_rebuild(bool wanted);
   void record(std::int64_t timestep);
   std::int64_t timestep() const;
 
@@ -60,8 +60,6 @@ class ExternalFix {
   std::vector<double> masses_;
   std::vector<StatsRow> stats_;
   double largest_radius_ = 0;
-  bool forced_ = false;
-  int kept_check_ = 1;
   std::exception_ptr failure_;
 };
 

@@ -152,6 +152,7 @@ void bind_external_fix(nb::module_ &m)
       .def("invoke", &ExternalFix::invoke)
       .def("set_cutoff", &ExternalFix::set_cutoff, "cutoff"_a)
       .def_prop_ro("failed", &ExternalFix::failed)
+      .def_prop_ro("unconverged_steps", [](const ExternalFix &fix) { return fix.step().report().unconverged; })
       .def("raise_failure", [](ExternalFix &fix) { if (auto e = fix.take_failure()) std::rethrow_exception(e); })
       .def("stats_bytes", &stats_bytes)
       .def("contact_rows", &contact_rows)
@@ -163,6 +164,8 @@ void bind_external_fix(nb::module_ &m)
 NB_MODULE(_core, m)
 {
   m.doc() = "Compiled core of nscd_lmp.";
+  // A LAMMPS object that lives until the interpreter ends keeps its fix: no leak.
+  nb::set_leak_warnings(false);
   nb::exception<nscd::Error>(m, "NscdError", PyExc_RuntimeError);
   bind_external_fix(m);
   m.def("solvers", &solver_table, "Solvers in legend order: name, title, parameter, default (multiple of 1/W_nn).");

@@ -29,7 +29,11 @@ Step::Step(const Settings &settings, CustomSolver custom) :
   options_.parameter = std::isnan(given) ? solver_->default_parameter : given;
 }
 
-void Step::begin_run() { report_ = {}; }
+void Step::begin_run(bool list_just_built)
+{
+  report_ = {};
+  fresh_list_ = fresh_list_ || list_just_built;
+}
 
 const StepReport &Step::advance(const Grains &grains, const PairList &pairs, double dt)
 {
@@ -110,13 +114,34 @@ void Step::find_owners()
   }
 }
 
+// How far from q_k contacts are sought, m, for a grain of this speed.
+double Step::longest_move(double speed) const
+{
+  return state_.dt * speed * (law_->looks_ahead() ? 1 : law_->prediction(settings_));
+}
+
+double Step::farthest_since_listed() const
+{
+  const double *x = state_.grains.x;
+  double farthest2 = 0;
+  for (std::size_t i = 0; i + 2 < listed_x_.size(); i += 3) {
+    const double a = x[i] - listed_x_[i], b = x[i + 1] - listed_x_[i + 1], c = x[i + 2] - listed_x_[i + 2];
+    farthest2 = std::max(farthest2, a * a + b * b + c * c);
+  }
+  return std::sqrt(farthest2);
+}
+
+// The list holds all pairs up to `reach` apart when it was built; since then grains moved, and they look ahead.
 void Step::check_reach(const PairList &pairs)
 {
-  const double needed = 2 * state_.dt * largest_speed_;
-  if (needed > pairs.reach)
-    fail("grains can meet over ", needed, " in one step (2 dt v, v = ", largest_speed_,
-         ") but pairs are listed only up to a surface distance of ", pairs.reach,
-         ": contacts could be missed; use a smaller timestep, a larger neighbor skin or a larger pair_style cutoff");
+  if (pairs.just_built || fresh_list_) listed_x_.assign(state_.grains.x, state_.grains.x + 3 * std::size_t(state_.grains.owned));
+  fresh_list_ = false;
+  const double moved = farthest_since_listed(), ahead = longest_move(largest_speed_);
+  if (2 * (moved + ahead) > pairs.reach * (1 + 1e-12))
+    fail("contacts could be missed: grains have moved up to ", moved, " since the neighbor list was built and look ahead ",
+         ahead, " (dt v, v = ", largest_speed_, "), but it holds pairs only up to ", pairs.reach,
+         " apart: raise the cutoff of the pair style by at least ", 2 * (moved + ahead) - pairs.reach,
+         ", or use a larger neighbor skin or a smaller timestep");
 }
 
 // Biases and start impulses of the contacts from `first` on.
@@ -226,27 +251,23 @@ void Step::tally_contacts()
 void Step::write_back(const PairList &pairs)
 {
   const Grains &g = state_.grains;
-  double fastest2 = 0, farthest2 = 0;
+  double fastest2 = 0;
   for (int i = 0; i < g.owned; ++i) {
     const Body &b = state_.bodies[i];
     if (b[3] == 0) continue;
     double *x = g.x + 3 * std::size_t(i), *v = g.v + 3 * std::size_t(i), *f = g.f + 3 * std::size_t(i);
     const Vec4 moved = state_.spheres[i].centre + state_.displacement[i];
     const double per_force = state_.dt * g.force_to_acceleration * b[3];
-    double move2 = 0;
     for (int d = 0; d < 3; ++d) {
       const double free = v[d] + f[d] * per_force;
-      move2 += (moved[d] - x[d]) * (moved[d] - x[d]);
       f[d] = (b[d] - free) / per_force;
       x[d] = moved[d];
       v[d] = b[d];
     }
-    farthest2 = std::max(farthest2, move2);
     fastest2 = std::max(fastest2, b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
   }
-  travel_ = (pairs.just_built ? 0 : travel_) + std::sqrt(farthest2);
-  const double next = state_.dt * (std::sqrt(fastest2) + state_.smooth_kick);
-  wants_rebuild_ = 2 * (travel_ + next) > pairs.reach;
+  const double next = longest_move(std::sqrt(fastest2) + state_.smooth_kick);
+  wants_rebuild_ = 2 * (farthest_since_listed() + next) > pairs.reach;
 }
 
 }    // namespace nscd

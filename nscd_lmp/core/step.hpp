@@ -36,8 +36,8 @@ class Step {
   Step(const Step &) = delete;
   Step &operator=(const Step &) = delete;
 
-  // Energy and unconverged steps count from here.
-  void begin_run();
+  // Energy and unconverged steps count from here. `list_just_built`: the first step starts from its positions.
+  void begin_run(bool list_just_built);
 
   // One step of length dt (s). Raises Error and leaves the arrays as they were if the input is bad, a contact
   // can be missed, or the step does not converge under `unconverged error`.
@@ -55,6 +55,7 @@ class Step {
   void load_body(int i, double &largest_kick, double &largest_speed);
   void find_owners();
   void check_reach(const PairList &pairs);
+  double longest_move(double speed) const;
   void start_contacts(std::size_t first);
   void solve();
   void solve_once();
@@ -62,6 +63,7 @@ class Step {
   void finish();
   void tally_contacts();
   void write_back(const PairList &pairs);
+  double farthest_since_listed() const;
 
   const Settings settings_;
   const SolverEntry *solver_;
@@ -73,8 +75,9 @@ class Step {
   std::vector<double> workspace_;
   std::vector<std::pair<std::int32_t, int>> by_tag_;
   StepReport report_;
-  double largest_speed_ = 0;   // m/s, before or after the smooth forces
-  double travel_ = 0;          // m, the farthest a grain may have moved since the list was built
+  double largest_speed_ = 0;       // m/s, before or after the smooth forces
+  std::vector<double> listed_x_;   // (owned, 3) positions at which the pair list was built
+  bool fresh_list_ = true;
   bool wants_rebuild_ = false;
 };
 

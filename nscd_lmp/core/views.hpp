@@ -29,7 +29,7 @@ struct PairList {
   const int *const *first = nullptr;     // (count) per entry: pointer to the neighbor indices
   bool cross_pairs_twice = false;        // newton off: a pair with an image is listed from both sides
   double reach = 0;                      // surface distance up to which all pairs were listed when it was built
-  bool just_built = false;               // built in this step
+  bool just_built = false;               // at the positions that this step starts from
 };
 constexpr int neighbor_index_mask = 0x1FFFFFFF;
 

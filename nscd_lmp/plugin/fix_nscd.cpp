@@ -113,7 +113,7 @@ void FixNscd::init()
 void FixNscd::setup(int /*vflag*/)
 {
   find_list();
-  step_->begin_run();
+  step_->begin_run(neighbor->ago == 0);
   steps_ = 0;
   if (comm->me == 0)
     utils::logmesg(lmp, "fix nscd {}: {}\n", id, nscd::describe(step_->settings()));

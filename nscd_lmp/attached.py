@@ -1,0 +1,55 @@
+"""What :func:`nscd_lmp.attach` returns: the statistics and contacts of a running simulation."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nscd_lmp import _core
+
+STATS_DTYPE = np.dtype(
+    [
+        ("step", "i8"),
+        *((name, "f8") for name in _core.REPORT_COLUMNS),
+        ("seconds_contacts", "f8"),
+        ("seconds_solver", "f8"),
+    ]
+)
+
+
+class Attached:
+    """Nonsmooth contact dynamics on a LAMMPS instance; made by :func:`nscd_lmp.attach`."""
+
+    def __init__(self, fix: _core.ExternalFix, detach: Any) -> None:
+        self._fix = fix
+        self._detach = detach
+
+    @property
+    def stats(self) -> NDArray[Any]:
+        """Return a structured array with a row for every step taken so far.
+
+        Columns: `step`, the columns of ``fix nscd``'s vector (``contacts``, ``iterations``, ``criterion`` (42) and its
+        parts ``motion``, ``bipotential``, ``penetration`` in m/s, ``relative_residual``, ``largest_overlap`` in m,
+        ``dissipated_energy`` in J since the run began, ``largest_overlap_ratio`` over the smaller radius,
+        ``unconverged_steps`` since the run began), ``seconds_contacts`` and ``seconds_solver``.
+        """
+        return np.frombuffer(self._fix.stats_bytes(), dtype=STATS_DTYPE)
+
+    @property
+    def contacts(self) -> dict[str, NDArray[np.float64]]:
+        """Return the contacts of the last step as arrays of length n.
+
+        Keys: ``tag_i``, ``tag_j`` (a wall w is -1 - w), the contact point ``x``, ``y``, ``z`` (m), the unit normal
+        ``nx``, ``ny``, ``nz`` from j to i, ``gap`` (m, at the end of the step) and ``impulse`` (N s).
+        """
+        rows = self._fix.contact_rows()
+        return {name: rows[:, column].copy() for column, name in enumerate(_core.CONTACT_COLUMNS)}
+
+    @property
+    def description(self) -> str:
+        """Return one line: what was chosen for the scene."""
+        return self._fix.describe()
+
+    def detach(self) -> None:
+        """Remove the fix from LAMMPS and give its methods back; the statistics stay readable."""
+        self._detach()

@@ -1,0 +1,27 @@
+"""What there is to choose from, as the compiled core registers it."""
+
+from dataclasses import dataclass
+
+from nscd_lmp import _core
+
+
+@dataclass(frozen=True)
+class Solver:
+    """A solver: keyword, legend title, and its parameter with default (multiple of 1/W_nn)."""
+
+    name: str
+    title: str
+    parameter: str
+    default: float
+
+
+@dataclass(frozen=True)
+class Law:
+    """A contact law of the time-stepping scheme: keyword and legend title."""
+
+    name: str
+    title: str
+
+
+SOLVERS: dict[str, Solver] = {row["name"]: Solver(**row) for row in _core.solvers()}
+LAWS: dict[str, Law] = {row["name"]: Law(**row) for row in _core.laws()}

@@ -1,0 +1,29 @@
+"""Walls that grains can touch."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A rigid half-space: the plane through `point`, with `normal` into the free side.
+
+    Parameters
+    ----------
+    point : three floats
+        Any point of the plane, in LAMMPS' length unit.
+    normal : three floats
+        Towards the grains; any length but zero.
+    """
+
+    point: Sequence[float]
+    normal: Sequence[float]
+
+    def __post_init__(self) -> None:
+        for name in ("point", "normal"):
+            if len(getattr(self, name)) != 3:
+                raise ValueError(f"Plane: {name} = {getattr(self, name)!r} must be three numbers")
+
+    def keywords(self) -> list[str]:
+        """Return the words of ``fix nscd`` for this wall."""
+        return ["wall", "plane", *(repr(float(value)) for value in (*self.point, *self.normal))]
