@@ -42,7 +42,7 @@ void ExternalFix::advance()
   if (library_.get_thermo(library_.handle, "elapsed") == 0) {
     require_atoms();
     find_list();
-    step_.begin_run(setting("neigh_ago") == 0);
+    step_.begin_run(setting("neigh_ago") <= 0);
     return;
   }
   const Grains g = grains();
@@ -109,7 +109,8 @@ PairList ExternalFix::pairs(const Grains &g)
   p.neighbors = counts_.data();
   p.first = first_.data();
   p.cross_pairs_twice = setting("newton_pair") == 0;
-  p.just_built = setting("neigh_ago") == 0;
+  // Builds before 2023 do not tell the list's age (-1): every list is taken as new, which weakens the check on it.
+  p.just_built = setting("neigh_ago") <= 0;
   if (p.just_built || largest_radius_ == 0)
     largest_radius_ = g.owned ? *std::max_element(g.radius, g.radius + g.owned) : 0;
   p.reach = cutoff_ - 2 * largest_radius_;

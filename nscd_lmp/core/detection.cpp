@@ -56,27 +56,42 @@ void add_pair(State &s, int i, int j, const Vec4 &separation, double distance_sq
   s.infos.push_back({gap, start_velocity(s, normal, bi, bj), pair_key(s.grains.tag[i], s.grains.tag[j]), i, j});
 }
 
-void detect_pairs(State &s, const PairList &pairs)
+// All listed pairs that are near enough to watch, into s.found. Most are not, and a branch on that would be
+// mispredicted, so every pair is stored and the counter moves on or not.
+void filter_pairs(State &s, const PairList &pairs)
 {
   const Sphere *const spheres = s.spheres.data();
-  const int owned = s.grains.owned;
+  std::size_t kept = 0;
   for (int entry = 0; entry < pairs.count; ++entry) {
-    const int i = pairs.atom[entry];
-    const Sphere si = spheres[i];
-    const double radius_i = si.radius + si.reach, watch_i = si.radius + s.watch;
+    const int i = pairs.atom[entry], count = pairs.neighbors[entry];
     const int *const neighbors = pairs.first[entry];
-    for (int k = 0; k < pairs.neighbors[entry]; ++k) {
+    const Vec4 centre = spheres[i].centre;
+    const double watch = spheres[i].radius + s.watch;
+    if (s.found.size() < kept + count) s.found.resize(2 * (kept + count));
+    NearPair *const found = s.found.data();
+    for (int k = 0; k < count; ++k) {
       const int j = neighbors[k] & neighbor_index_mask;
-      const Sphere &sj = spheres[j];
-      const Vec4 separation = si.centre - sj.centre;
-      const double distance_squared = dot(separation, separation);
-      const double watched = watch_i + sj.radius;
-      if (distance_squared > watched * watched) continue;
-      if (pairs.cross_pairs_twice && j >= owned && s.grains.tag[i] > s.grains.tag[j]) continue;
-      const double limit = radius_i + sj.radius + sj.reach;
-      if (distance_squared > limit * limit) s.near.push_back({i, j});
-      else add_pair(s, i, j, separation, distance_squared);
+      const Vec4 separation = centre - spheres[j].centre;
+      const double watched = watch + spheres[j].radius;
+      found[kept] = {i, j};
+      kept += dot(separation, separation) <= watched * watched;
     }
+  }
+  s.found_count = kept;
+}
+
+void detect_pairs(State &s, const PairList &pairs)
+{
+  filter_pairs(s, pairs);
+  for (std::size_t k = 0; k < s.found_count; ++k) {
+    const auto [i, j] = s.found[k];
+    if (pairs.cross_pairs_twice && j >= s.grains.owned && s.grains.tag[i] > s.grains.tag[j]) continue;
+    const Sphere &a = s.spheres[i], &b = s.spheres[j];
+    const Vec4 separation = a.centre - b.centre;
+    const double distance_squared = dot(separation, separation);
+    const double limit = a.radius + a.reach + b.radius + b.reach;
+    if (distance_squared > limit * limit) s.near.push_back({i, j});
+    else add_pair(s, i, j, separation, distance_squared);
   }
 }
 
@@ -140,6 +155,26 @@ bool promote_pair(State &s, const NearPair &near)
   return true;
 }
 
+// Neighbors in the list share bodies, and a sweep in list order would wait for each store before the next load.
+// Taking the contacts from several places of the list in turn keeps the processor busy (6.6 -> 4.0 ns a contact,
+// the sweep count within 1 %); more places than 8 gain nothing.
+constexpr std::size_t streams = 8;
+
+void interleave(State &s)
+{
+  const std::size_t n = s.contacts.size(), length = (n + streams - 1) / streams;
+  s.listed_contacts.swap(s.contacts);
+  s.listed_infos.swap(s.infos);
+  s.contacts.resize(n);
+  s.infos.resize(n);
+  std::size_t k = 0;
+  for (std::size_t place = 0; place < length; ++place)
+    for (std::size_t listed = place; listed < n; listed += length, ++k) {
+      s.contacts[k] = s.listed_contacts[listed];
+      s.infos[k] = s.listed_infos[listed];
+    }
+}
+
 }    // namespace
 
 void detect(State &state, const PairList &pairs)
@@ -149,6 +184,7 @@ void detect(State &state, const PairList &pairs)
   state.near.clear();
   detect_pairs(state, pairs);
   for (std::size_t wall = 0; wall < state.settings.walls.size(); ++wall) detect_wall(state, wall);
+  interleave(state);
 }
 
 std::size_t promote_near(State &state)

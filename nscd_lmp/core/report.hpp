@@ -16,6 +16,21 @@ constexpr std::array<std::string_view, 11> report_column_names{
 constexpr int report_columns = int(report_column_names.size());
 double report_column(const StepReport &report, int column);
 
+// f_ID[1][1..] of fix nscd: totals since the fix was made. Not for thermo output: they hold seconds.
+constexpr std::array<std::string_view, 8> totals_column_names{
+    "steps", "seconds_contacts", "seconds_solver", "worst_overlap", "worst_overlap_ratio", "iterations",
+    "unconverged_steps", "dissipated_energy"};
+constexpr int totals_columns = int(totals_column_names.size());
+
+class Totals {
+ public:
+  void add(const StepReport &report);
+  double column(int column) const { return values_[column]; }
+
+ private:
+  std::array<double, totals_columns> values_{};
+};
+
 // Rows of `dump local`: a wall contact has -1 - wall (walls count from 0) as its second tag.
 constexpr std::array<std::string_view, 10> contact_column_names{"tag_i", "tag_j", "x", "y", "z",
                                                                 "nx", "ny", "nz", "gap", "impulse"};

@@ -31,6 +31,10 @@ struct State {
   std::vector<Body> bodies;         // (owned + obstacle_copies)
   std::vector<Contact> contacts;
   std::vector<ContactInfo> infos;   // beside contacts
+  std::vector<NearPair> found;           // listed pairs that are near enough, the first found_count entries
+  std::size_t found_count = 0;
+  std::vector<Contact> listed_contacts;  // as found, before they are brought into the order of the sweep
+  std::vector<ContactInfo> listed_infos;
   std::vector<NearPair> near;       // watched by law gap: made contacts if the solution drives them together
   std::vector<Vec4> displacement;   // (owned) from where contacts were sought to q_{k+1}
 

@@ -21,7 +21,8 @@ static double seconds(Clock::time_point from, Clock::time_point to)
 
 Step::Step(const Settings &settings, CustomSolver custom) :
     settings_(checked(settings)), solver_(&find_solver(settings_.solver)), custom_(std::move(custom)),
-    law_(find_law(settings_.law).make()), state_{.settings = settings_, .grains = {}}
+    law_(find_law(settings_.law).make()), state_{.settings = settings_, .grains = {}},
+    prediction_(law_->prediction(settings_)), look_ahead_(law_->looks_ahead() ? 1 : 0)
 {
   options_.tol = settings_.tol;
   options_.maxiter = settings_.maxiter;
@@ -42,18 +43,15 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
   gather(grains);
   check_reach(pairs);
   detect(state_, pairs);
-  const auto detected = Clock::now();
   solve();
-  const auto solved = Clock::now();
   finish();
   write_back(pairs);
-  report_.seconds_contacts = seconds(start, detected) + seconds(solved, Clock::now());
-  report_.seconds_solver = seconds(detected, solved);
+  report_.seconds_contacts = seconds(start, Clock::now()) - report_.seconds_solver;
   return report_;
 }
 
 // Free velocity (14) and predicted centre (18) of one grain.
-void Step::load_body(int i, double &largest_kick, double &largest_speed)
+void Step::load_body(int i)
 {
   const Grains &g = state_.grains;
   const double *x = g.x + 3 * std::size_t(i), *v = g.v + 3 * std::size_t(i), *f = g.f + 3 * std::size_t(i);
@@ -62,18 +60,25 @@ void Step::load_body(int i, double &largest_kick, double &largest_speed)
   const Vec4 before{v[0], v[1], v[2], 0};
   const Vec4 kick = Vec4{f[0], f[1], f[2], 0} * (state_.dt * g.force_to_acceleration * inverse_mass);
   const Vec4 free = before + kick;
-  const double kick2 = dot(kick, kick), speed2 = std::max(dot(before, before), dot(free, free));
-  largest_kick = std::max(largest_kick, kick2);
-  largest_speed = std::max(largest_speed, speed2);
-  const Vec4 centre = Vec4{x[0], x[1], x[2], 0} + before * (moves ? state_.dt * law_->prediction(settings_) : 0.0);
-  const double reach = law_->looks_ahead() ? state_.dt * std::sqrt(speed2) : 0;
-  state_.spheres[i] = {centre, g.radius[i], reach};
+  const Vec4 centre = Vec4{x[0], x[1], x[2], 0} + before * (moves ? state_.dt * prediction_ : 0.0);
+  const double speed2 = std::max(dot(before, before), dot(free, free));
+  largest_kick2_ = std::max(largest_kick2_, dot(kick, kick));
+  largest_speed2_ = std::max(largest_speed2_, speed2);
+  state_.spheres[i] = {centre, g.radius[i], state_.dt * look_ahead_ * std::sqrt(speed2)};
   state_.bodies[i] = free + Vec4{0, 0, 0, inverse_mass};
-  if (!(std::isfinite(dot(centre, centre)) && std::isfinite(speed2)))
-    fail("grain ", g.tag[i], " has a position, velocity or force that is not a finite number");
+  // One test for all that is wrong: a not-a-number fails every comparison.
+  const bool fit = dot(centre, centre) + speed2 < INFINITY && g.radius[i] > 0 && inverse_mass < INFINITY &&
+      inverse_mass >= 0 && (inverse_mass > 0) == moves;
+  if (!fit) refuse(i);
+}
+
+void Step::refuse(int i) const
+{
+  const Grains &g = state_.grains;
   if (!(g.radius[i] > 0)) fail("grain ", g.tag[i], " has radius ", g.radius[i], ": nscd needs spheres of radius > 0");
-  if (moves && !(g.mass[i] > 0 && std::isfinite(g.mass[i])))
-    fail("grain ", g.tag[i], " has mass ", g.mass[i], ": every grain of the group needs a mass > 0");
+  if ((g.mask[i] & g.group) && !(g.mass[i] > 0 && std::isfinite(g.mass[i])))
+    fail("grain ", g.tag[i], " has mass ", g.mass[i], ": every grain of the group needs a finite mass > 0");
+  fail("grain ", g.tag[i], " has a position, velocity or force that is not a finite number");
 }
 
 void Step::gather(const Grains &grains)
@@ -84,15 +89,14 @@ void Step::gather(const Grains &grains)
   state_.owner.resize(all);
   state_.bodies.resize(owned + obstacle_copies);
   state_.displacement.resize(owned);
-  double kick2 = 0, speed2 = 0;
+  largest_kick2_ = largest_speed2_ = 0;
   for (int i = 0; i < owned; ++i) {
-    load_body(i, kick2, speed2);
+    load_body(i);
     state_.owner[i] = i;
   }
   std::fill(state_.bodies.begin() + owned, state_.bodies.end(), Body{});
-  state_.smooth_kick = std::sqrt(kick2);
-  state_.watch = law_->looks_ahead() ? watched_moves * state_.dt * std::sqrt(speed2) : 0;
-  largest_speed_ = std::sqrt(speed2);
+  state_.smooth_kick = std::sqrt(largest_kick2_);
+  state_.watch = watched_moves * state_.dt * look_ahead_ * std::sqrt(largest_speed2_);
   find_owners();
 }
 
@@ -114,12 +118,6 @@ void Step::find_owners()
   }
 }
 
-// How far from q_k contacts are sought, m, for a grain of this speed.
-double Step::longest_move(double speed) const
-{
-  return state_.dt * speed * (law_->looks_ahead() ? 1 : law_->prediction(settings_));
-}
-
 double Step::farthest_since_listed() const
 {
   const double *x = state_.grains.x;
@@ -136,10 +134,10 @@ void Step::check_reach(const PairList &pairs)
 {
   if (pairs.just_built || fresh_list_) listed_x_.assign(state_.grains.x, state_.grains.x + 3 * std::size_t(state_.grains.owned));
   fresh_list_ = false;
-  const double moved = farthest_since_listed(), ahead = longest_move(largest_speed_);
+  const double moved = farthest_since_listed(), speed = std::sqrt(largest_speed2_), ahead = longest_move(speed);
   if (2 * (moved + ahead) > pairs.reach * (1 + 1e-12))
     fail("contacts could be missed: grains have moved up to ", moved, " since the neighbor list was built and look ahead ",
-         ahead, " (dt v, v = ", largest_speed_, "), but it holds pairs only up to ", pairs.reach,
+         ahead, " (dt v, v = ", speed, "), but it holds pairs only up to ", pairs.reach,
          " apart: raise the cutoff of the pair style by at least ", 2 * (moved + ahead) - pairs.reach,
          ", or use a larger neighbor skin or a smaller timestep");
 }
@@ -177,6 +175,7 @@ void Step::ask_custom()
 
 void Step::solve_once()
 {
+  const auto start = Clock::now();
   Problem problem{state_.bodies, state_.contacts, settings_.restitution, state_.free_norm, workspace_};
   SolverReport solved;
   if (custom_) {
@@ -187,6 +186,7 @@ void Step::solve_once()
   } else {
     solved = solver_->solve(problem, options_);
   }
+  report_.seconds_solver += seconds(start, Clock::now());
   if (!std::isfinite(solved.criterion.total()))
     fail("solver ", settings_.solver, " diverged: the criterion is not a number; take rho or gamma closer to its default");
   report_.iterations += solved.iterations;
@@ -198,6 +198,7 @@ void Step::solve_once()
 void Step::solve()
 {
   report_.iterations = 0;
+  report_.seconds_solver = 0;
   std::size_t first = 0;
   do {
     start_contacts(first);
@@ -245,7 +246,8 @@ void Step::tally_contacts()
   }
   report_.largest_overlap = overlap;
   report_.largest_overlap_ratio = ratio;
-  report_.dissipated -= 0.5 * work;
+  report_.dissipated_in_step = -0.5 * work;
+  report_.dissipated += report_.dissipated_in_step;
 }
 
 void Step::write_back(const PairList &pairs)

@@ -19,6 +19,7 @@ struct StepReport {
   Criterion criterion;
   double largest_overlap = 0;        // m, at q_{k+1}
   double largest_overlap_ratio = 0;  // over the smaller radius of the pair
+  double dissipated_in_step = 0;     // J, by contacts
   double dissipated = 0;             // J, by contacts since begin_run
   long unconverged = 0;              // steps since begin_run
   bool converged = true;
@@ -52,10 +53,12 @@ class Step {
 
  private:
   void gather(const Grains &grains);
-  void load_body(int i, double &largest_kick, double &largest_speed);
+  void load_body(int i);
+  void refuse(int i) const;
   void find_owners();
   void check_reach(const PairList &pairs);
-  double longest_move(double speed) const;
+  // How far around q_k contacts are sought, m, for a grain of this speed.
+  double longest_move(double speed) const { return state_.dt * speed * (look_ahead_ + prediction_); }
   void start_contacts(std::size_t first);
   void solve();
   void solve_once();
@@ -68,14 +71,17 @@ class Step {
   const Settings settings_;
   const SolverEntry *solver_;
   CustomSolver custom_;
-  std::unique_ptr<Law> law_;
+  const std::unique_ptr<Law> law_;
   State state_;
   ImpulseMemory memory_;
   SolverOptions options_;
   std::vector<double> workspace_;
   std::vector<std::pair<std::int32_t, int>> by_tag_;
   StepReport report_;
-  double largest_speed_ = 0;       // m/s, before or after the smooth forces
+  const double prediction_;        // contacts are sought at q_k + prediction dt v_k
+  const double look_ahead_;        // and this times dt |v| around (0 or 1)
+  double largest_kick2_ = 0;       // (m/s)^2, of the smooth forces
+  double largest_speed2_ = 0;      // (m/s)^2, before or after them
   std::vector<double> listed_x_;   // (owned, 3) positions at which the pair list was built
   bool fresh_list_ = true;
   bool wants_rebuild_ = false;

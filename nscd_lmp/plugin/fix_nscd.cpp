@@ -1,7 +1,6 @@
 #include "fix_nscd.hpp"
 
 #include "../core/error.hpp"
-#include "../core/report.hpp"
 
 #include <atom.h>
 #include <comm.h>
@@ -41,12 +40,14 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
   time_integrate = 1;
   force_reneighbor = 1;
   next_reneighbor = -1;
-  scalar_flag = vector_flag = local_flag = 1;
+  scalar_flag = vector_flag = array_flag = local_flag = 1;
   size_vector = nscd::report_columns;
+  size_array_rows = 1;
+  size_array_cols = nscd::totals_columns;
   size_local_rows = 0;
   size_local_cols = nscd::contact_columns;
   global_freq = local_freq = 1;
-  extscalar = extvector = 0;
+  extscalar = extvector = extarray = 0;
 
   nscd::Settings settings;
   or_stop(error, id, [&] {
@@ -176,6 +177,7 @@ void FixNscd::final_integrate()
     error->all(FLERR, "Fix nscd {}: {} of {} grains left the box: close it with wall planes or boundary s or m", id,
                atom->natoms - atom->nlocal, atom->natoms);
   or_stop(error, id, [&] { step_->advance(grains(), pairs(), update->dt); });
+  totals_.add(step_->report());
   ++steps_;
   next_reneighbor = step_->wants_rebuild() ? update->ntimestep + 1 : -1;
   if (local_rows_wanted()) fill_local();
@@ -206,6 +208,8 @@ void FixNscd::fill_local()
 double FixNscd::compute_scalar() { return step_->report().iterations; }
 
 double FixNscd::compute_vector(int n) { return nscd::report_column(step_->report(), n); }
+
+double FixNscd::compute_array(int /*row*/, int column) { return totals_.column(column); }
 
 double FixNscd::memory_usage()
 {

@@ -1,6 +1,7 @@
 // fix nscd: the script door. LAMMPS arrays in, velocities out; no numerics.
 #pragma once
 
+#include "../core/report.hpp"
 #include "../core/step.hpp"
 
 #include <fix.h>
@@ -20,6 +21,7 @@ class FixNscd : public Fix {
   void post_run() override;
   double compute_scalar() override;
   double compute_vector(int n) override;
+  double compute_array(int row, int column) override;
   double memory_usage() override;
 
  private:
@@ -40,7 +42,8 @@ class FixNscd : public Fix {
   std::vector<double *> local_rows_;
   double list_reach_ = 0;
   bool rows_every_step_ = false;
-  bigint steps_ = 0;
+  nscd::Totals totals_;
+  bigint steps_ = 0;                    // of the run
 };
 
 }    // namespace LAMMPS_NS

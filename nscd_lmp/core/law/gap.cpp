@@ -33,6 +33,7 @@ namespace {
 
 constexpr double recovery_cap = 0.1;   // of the step's largest smooth velocity change
 constexpr double resting_kicks = 2;    // slower than so many smooth velocity changes: resting, not an impact
+constexpr double tolerances = 10;     // single contacts miss the mean criterion by about so much
 constexpr int max_revisions = 8;
 
 class Gap final : public Law {
@@ -43,24 +44,19 @@ class Gap final : public Law {
   void displace(State &s) override;
 
  private:
-  double resting_bias(const State &s, double gap) const;
   static double smooth_change(const State &s, const Contact &c);
   void make_impact(State &s, std::size_t k);
   bool separates(const State &s, std::size_t k);
+  void open_contacts(const State &s);
 
   std::vector<char> impact_;     // per contact: it has the impact's bias
   std::vector<double> slow_;     // per contact: approach speed below which it is not an impact
   std::vector<Vec4> mean_;       // per body: midpoint velocity, or v_{k+1} where that is needed
   std::vector<char> final_;      // per body: moves with v_{k+1}
+  std::vector<std::uint32_t> undecided_;   // contacts not both of whose bodies move with v_{k+1}
+  double slack_ = 0;             // m, overlap that the solver's tolerance leaves anyway
   int revisions_ = 0;
 };
-
-double Gap::resting_bias(const State &s, double gap) const
-{
-  if (gap >= 0) return gap / s.dt;
-  const double cap = recovery_cap * s.smooth_kick + s.settings.tol;
-  return -std::min(-gap * s.settings.recovery / s.dt, cap);
-}
 
 // What the smooth forces of the step add to the contact's velocity, m/s.
 double Gap::smooth_change(const State &s, const Contact &c)
@@ -83,7 +79,12 @@ void Gap::make_impact(State &s, std::size_t k)
 void Gap::set_bias(State &s, std::size_t first)
 {
   const std::size_t n = s.contacts.size();
-  for (std::size_t k = first; k < n; ++k) s.contacts[k].bias = resting_bias(s, s.infos[k].gap);
+  const double rate = 1 / s.dt, back = s.settings.recovery / s.dt;
+  const double cap = recovery_cap * s.smooth_kick + s.settings.tol;
+  for (std::size_t k = first; k < n; ++k) {
+    const double gap = s.infos[k].gap;
+    s.contacts[k].bias = std::max(gap * (gap < 0 ? back : rate), -cap);
+  }
   if (first == 0) revisions_ = 0;
   if (s.settings.restitution == 0) return;
   impact_.resize(first);
@@ -92,7 +93,7 @@ void Gap::set_bias(State &s, std::size_t first)
   for (std::size_t k = first; k < n; ++k) {
     const double before = s.infos[k].speed_before;
     const double without = normal_velocity(s.contacts[k], s.bodies.data());
-    slow_[k] = resting_kicks * std::abs(smooth_change(s, s.contacts[k])) + 10 * s.settings.tol;
+    slow_[k] = resting_kicks * std::abs(smooth_change(s, s.contacts[k])) + tolerances * s.settings.tol;
     const bool closes = s.infos[k].gap + s.dt * without < 0;
     if (closes && before < -slow_[k]) make_impact(s, k);
   }
@@ -117,7 +118,7 @@ bool Gap::separates(const State &s, std::size_t k)
   const Contact &c = s.contacts[k];
   if (final_[c.i] && final_[c.j]) return true;
   const double rate = dot(c.normal, mean_[c.i] - mean_[c.j]);
-  if (s.infos[k].gap + s.dt * rate >= 0 || rate >= normal_velocity(c, s.bodies.data())) return true;
+  if (s.infos[k].gap + s.dt * rate >= -slack_ || rate >= normal_velocity(c, s.bodies.data())) return true;
   for (const int b : {c.i, c.j}) {
     mean_[b] = s.bodies[b];
     final_[b] = 1;
@@ -125,9 +126,33 @@ bool Gap::separates(const State &s, std::size_t k)
   return false;
 }
 
+// Makes grains move with v_{k+1} until no contact is driven into overlap. After the first pass only contacts between
+// a grain that has changed and one that has not can fail; those whose grains have both changed are done.
+void Gap::open_contacts(const State &s)
+{
+  bool changed = false;
+  undecided_.clear();
+  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
+    changed |= !separates(s, k);
+    if (!(final_[s.contacts[k].i] && final_[s.contacts[k].j])) undecided_.push_back(std::uint32_t(k));
+  }
+  while (changed) {
+    changed = false;
+    std::size_t kept = 0;
+    for (const std::uint32_t k : undecided_) {
+      const bool i = final_[s.contacts[k].i], j = final_[s.contacts[k].j];
+      if (i != j) changed |= !separates(s, k);
+      undecided_[kept] = k;
+      kept += !(i && j);
+    }
+    undecided_.resize(kept);
+  }
+}
+
 void Gap::displace(State &s)
 {
   const std::size_t bodies = s.bodies.size();
+  slack_ = tolerances * s.settings.tol * s.dt;
   mean_.resize(bodies);
   final_.assign(bodies, 0);
   for (std::size_t i = 0; i < bodies; ++i) {
@@ -140,11 +165,7 @@ void Gap::displace(State &s)
       final_[i] = 1;
     }
   }
-  for (bool again = true; again;) {
-    again = false;
-    for (std::size_t k = 0; k < s.contacts.size(); ++k)
-      if (!separates(s, k)) again = true;
-  }
+  open_contacts(s);
   for (int i = 0; i < s.grains.owned; ++i) {
     const Vec4 &w = mean_[i];
     s.displacement[i] = Vec4{w[0], w[1], w[2], 0} * (w[3] > 0 ? s.dt : 0.0);
