@@ -33,20 +33,21 @@ nb::ndarray<nb::numpy, T> make_array(std::size_t count, std::size_t columns, Val
 int body_index(const State &s, int body) { return body < s.grains.owned && s.bodies[body][3] > 0 ? body : -1; }
 
 // The problem as a Python solver sees it; the names are those of nscd_lmp.ContactSystem.
-nb::dict contact_system(const State &s)
+nb::dict contact_system(const State &s, const nscd::ContactView &view)
 {
-  const auto n = s.contacts.size();
+  const auto n = view.contacts.size();
   const auto *bodies = s.bodies.data();
+  const auto &contacts = view.contacts;
   nb::dict d;
-  d["body_i"] = make_array<int>(n, 0, [&](auto k, auto) { return body_index(s, s.contacts[k].i); });
-  d["body_j"] = make_array<int>(n, 0, [&](auto k, auto) { return body_index(s, s.contacts[k].j); });
+  d["body_i"] = make_array<int>(n, 0, [&](auto k, auto) { return body_index(s, contacts[k].i); });
+  d["body_j"] = make_array<int>(n, 0, [&](auto k, auto) { return body_index(s, contacts[k].j); });
   d["inverse_mass"] = make_array<double>(s.grains.owned, 0, [&](auto i, auto) { return bodies[i][3]; });
-  d["normal"] = make_array<double>(n, 3, [&](auto k, auto c) { return s.contacts[k].normal[c]; });
-  d["gap"] = make_array<double>(n, 0, [&](auto k, auto) { return s.infos[k].gap; });
-  d["bias"] = make_array<double>(n, 0, [&](auto k, auto) { return s.contacts[k].bias; });
-  d["start"] = make_array<double>(n, 0, [&](auto k, auto) { return s.contacts[k].impulse; });
+  d["normal"] = make_array<double>(n, 3, [&](auto k, auto c) { return contacts[k].normal[c]; });
+  d["gap"] = make_array<double>(n, 0, [&](auto k, auto) { return view.infos[k].gap; });
+  d["bias"] = make_array<double>(n, 0, [&](auto k, auto) { return contacts[k].bias; });
+  d["start"] = make_array<double>(n, 0, [&](auto k, auto) { return contacts[k].impulse; });
   d["velocity"] = make_array<double>(
-      n, 0, [&](auto k, auto) { return nscd::normal_velocity(s.contacts[k], bodies) + s.contacts[k].bias; });
+      n, 0, [&](auto k, auto) { return nscd::normal_velocity(contacts[k], bodies) + contacts[k].bias; });
   return d;
 }
 
@@ -54,10 +55,10 @@ nb::dict contact_system(const State &s)
 nscd::Step::CustomSolver python_solver(nb::object solve)
 {
   if (solve.is_none()) return {};
-  return [solve](const State &state, std::span<double> impulses) {
+  return [solve](const State &state, const nscd::ContactView &view, std::span<double> impulses) {
     nb::gil_scoped_acquire gil;
     using Impulses = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-    nb::object answer = solve(contact_system(state));
+    nb::object answer = solve(contact_system(state, view));
     const auto given = nb::cast<Impulses>(answer);
     if (given.shape(0) != impulses.size())
       nscd::fail("the Python solver returned ", given.shape(0), " impulses for ", impulses.size(), " contacts");

@@ -4,6 +4,7 @@
 // Not to be confused with the local laws in local/, which are ways to solve one contact.
 #pragma once
 
+#include "law/impacts.hpp"
 #include "state.hpp"
 
 #include <memory>
@@ -19,11 +20,13 @@ class Law {
   virtual double prediction(const Settings &) const { return 0; }
   // Whether contacts are sought ahead, within dt times the speeds, or only where spheres touch.
   virtual bool looks_ahead() const { return false; }
+  // Resolves impacts ahead of the contacts, if the law does; the bodies then have the velocities after them.
+  virtual void impacts(State &, const SolvePart &) {}
   // Fills the biases of the contacts from `first` on. Bodies have the velocities without these contacts,
   // state.grains.v has v_k.
   virtual void set_bias(State &, std::size_t first) = 0;
-  // After a solve: true if the law changed biases because of it, and the problem must be solved again.
-  virtual bool revise(State &) { return false; }
+  // The restitution that the biases contain, for the criterion's v~ = v / (1 + e).
+  virtual double restitution_in_bias(const Settings &) const { return 0; }
   // Fills state.displacement, from where contacts were sought to q_{k+1}; bodies have v_{k+1}.
   virtual void displace(State &) = 0;
 };

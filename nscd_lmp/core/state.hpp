@@ -5,6 +5,7 @@
 #include "settings.hpp"
 #include "views.hpp"
 
+#include <span>
 #include <vector>
 
 namespace nscd {
@@ -33,12 +34,12 @@ struct State {
   std::vector<ContactInfo> infos;   // beside contacts
   std::vector<NearPair> found;           // listed pairs that are near enough, the first found_count entries
   std::size_t found_count = 0;
+  std::vector<double> impact_impulse;    // N s per contact, of impacts resolved ahead of the contacts; or empty
   std::vector<Contact> listed_contacts;  // as found, before they are brought into the order of the sweep
   std::vector<ContactInfo> listed_infos;
   std::vector<NearPair> near;       // watched by law gap: made contacts if the solution drives them together
   std::vector<Vec4> displacement;   // (owned) from where contacts were sought to q_{k+1}
 
-  double free_norm = 0;             // ||v_free + bias||_2 over the contacts, m/s
   double watch = 0;                 // surface distance within which pairs are watched, m
   double smooth_kick = 0;           // largest |dt f / m| of the step, m/s
 };

@@ -142,17 +142,23 @@ void Step::check_reach(const PairList &pairs)
          ", or use a larger neighbor skin or a smaller timestep");
 }
 
+// ||v + bias||_2 over the contacts, with the bodies as they are, m/s.
+double Step::free_norm(std::span<const Contact> contacts) const
+{
+  double norm = 0;
+  for (const Contact &c : contacts) {
+    const double v = normal_velocity(c, state_.bodies.data()) + c.bias;
+    norm += v * v;
+  }
+  return std::sqrt(norm);
+}
+
 // Biases and start impulses of the contacts from `first` on.
 void Step::start_contacts(std::size_t first)
 {
   law_->set_bias(state_, first);
-  double norm = first == 0 ? 0 : state_.free_norm * state_.free_norm;
-  for (std::size_t k = first; k < state_.contacts.size(); ++k) {
-    const Contact &c = state_.contacts[k];
-    const double v = normal_velocity(c, state_.bodies.data()) + c.bias;
-    norm += v * v;
-  }
-  state_.free_norm = std::sqrt(norm);
+  const auto added = std::span(state_.contacts).subspan(first);
+  free_norm_ = std::hypot(first == 0 ? 0 : free_norm_, free_norm(added));
   if (!settings_.warmstart) return;
   for (std::size_t k = first; k < state_.contacts.size(); ++k) {
     Contact &c = state_.contacts[k];
@@ -161,25 +167,26 @@ void Step::start_contacts(std::size_t first)
   }
 }
 
-void Step::ask_custom()
+void Step::ask_custom(std::span<Contact> contacts, std::span<const ContactInfo> infos)
 {
-  workspace_.resize(state_.contacts.size());
-  for (std::size_t k = 0; k < workspace_.size(); ++k) workspace_[k] = state_.contacts[k].impulse;
-  custom_(state_, workspace_);
-  for (std::size_t k = 0; k < workspace_.size(); ++k) {
-    Contact &c = state_.contacts[k];
+  workspace_.resize(contacts.size());
+  for (std::size_t k = 0; k < contacts.size(); ++k) workspace_[k] = contacts[k].impulse;
+  custom_(state_, {contacts, infos}, workspace_);
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    Contact &c = contacts[k];
     apply_impulse(c, workspace_[k] - c.impulse, state_.bodies.data());
     c.impulse = workspace_[k];
   }
 }
 
-void Step::solve_once()
+void Step::solve_part(std::span<Contact> contacts, std::span<const ContactInfo> infos, double restitution,
+                      double free_norm)
 {
   const auto start = Clock::now();
-  Problem problem{state_.bodies, state_.contacts, settings_.restitution, state_.free_norm, workspace_};
+  Problem problem{state_.bodies, contacts, restitution, free_norm, workspace_};
   SolverReport solved;
   if (custom_) {
-    ask_custom();
+    ask_custom(contacts, infos);
     solved.iterations = 1;
     solved.criterion = measure(problem);
     solved.converged = solved.criterion.total() < settings_.tol;
@@ -191,7 +198,7 @@ void Step::solve_once()
     fail("solver ", settings_.solver, " diverged: the criterion is not a number; take rho or gamma closer to its default");
   report_.iterations += solved.iterations;
   report_.criterion = solved.criterion;
-  report_.converged = solved.converged;
+  report_.converged = report_.converged && solved.converged;
 }
 
 // The contact set grows while the solution drives watched pairs together; that ends, for lack of pairs.
@@ -199,15 +206,25 @@ void Step::solve()
 {
   report_.iterations = 0;
   report_.seconds_solver = 0;
+  report_.converged = true;
+  state_.impact_impulse.clear();
   std::size_t first = 0;
+  const SolvePart part = [this](auto contacts, auto infos, double e) {
+    solve_part(contacts, infos, e, free_norm(contacts));
+  };
   do {
+    law_->impacts(state_, part);
     start_contacts(first);
-    do solve_once();
-    while (law_->revise(state_));
+    solve_part(state_.contacts, state_.infos, law_->restitution_in_bias(settings_), free_norm_);
     law_->displace(state_);
     first = state_.contacts.size();
   } while (promote_near(state_) > 0);
   report_.contacts = int(state_.contacts.size());
+  judge();
+}
+
+void Step::judge()
+{
   if (report_.converged) return;
   if (settings_.unconverged == Unconverged::error)
     fail("step not solved: criterion (42) is ", report_.criterion.total(), " after ", report_.iterations,
@@ -215,10 +232,12 @@ void Step::solve()
   ++report_.unconverged;
 }
 
+// Warm start remembers what lasts, the contacts' impulses; what the step reports has the impacts' too.
 void Step::finish()
 {
-  tally_contacts();
   if (settings_.warmstart) memory_.remember(state_.contacts, state_.infos);
+  for (std::size_t k = 0; k < state_.impact_impulse.size(); ++k) state_.contacts[k].impulse += state_.impact_impulse[k];
+  tally_contacts();
 }
 
 // Overlap at q_{k+1}, and the energy the contacts took: -sum p (v_n^k + v_n^{k+1}) / 2, exact for any step.

@@ -27,10 +27,16 @@ struct StepReport {
   double seconds_solver = 0;
 };
 
+// The contacts of one solve: all of the step's, or those of a round of impacts.
+struct ContactView {
+  std::span<const Contact> contacts;
+  std::span<const ContactInfo> infos;
+};
+
 class Step {
  public:
   // Takes the place of the built-in solver: reads the problem, overwrites the start impulses (N s, a contact each).
-  using CustomSolver = std::function<void(const State &, std::span<double>)>;
+  using CustomSolver = std::function<void(const State &, const ContactView &, std::span<double>)>;
 
   // Raises Error for bad settings.
   explicit Step(const Settings &settings, CustomSolver custom = {});
@@ -61,8 +67,10 @@ class Step {
   double longest_move(double speed) const { return state_.dt * speed * (look_ahead_ + prediction_); }
   void start_contacts(std::size_t first);
   void solve();
-  void solve_once();
-  void ask_custom();
+  void judge();
+  void solve_part(std::span<Contact> contacts, std::span<const ContactInfo> infos, double restitution, double free_norm);
+  void ask_custom(std::span<Contact> contacts, std::span<const ContactInfo> infos);
+  double free_norm(std::span<const Contact> contacts) const;
   void finish();
   void tally_contacts();
   void write_back(const PairList &pairs);
@@ -80,6 +88,7 @@ class Step {
   StepReport report_;
   const double prediction_;        // contacts are sought at q_k + prediction dt v_k
   const double look_ahead_;        // and this times dt |v| around (0 or 1)
+  double free_norm_ = 0;           // of the step's contacts, m/s
   double largest_kick2_ = 0;       // (m/s)^2, of the smooth forces
   double largest_speed2_ = 0;      // (m/s)^2, before or after them
   std::vector<double> listed_x_;   // (owned, 3) positions at which the pair list was built

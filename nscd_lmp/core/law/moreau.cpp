@@ -18,6 +18,8 @@ class Moreau final : public Law {
  public:
   double prediction(const Settings &settings) const override { return 1 - settings.theta; }
 
+  double restitution_in_bias(const Settings &settings) const override { return settings.restitution; }
+
   void set_bias(State &s, std::size_t first) override
   {
     const double e = s.settings.restitution;

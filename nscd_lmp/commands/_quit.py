@@ -1,0 +1,27 @@
+"""LAMMPS' command ``quit`` ends the process by C's exit(): what is left to do has to be left with C."""
+
+import ctypes
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+_Callback = ctypes.CFUNCTYPE(None, ctypes.c_void_p)
+
+
+@contextmanager
+def at_quit(function: Callable[[], None]) -> Iterator[None]:
+    """Have `function` called if the process ends inside the ``with`` block."""
+    libc = ctypes.CDLL(None)
+    inside = True
+
+    def call(_: object) -> None:
+        if inside:
+            function()
+
+    callback = _Callback(call)
+    key = ctypes.c_int()  # by its address C finds the callback again
+    libc["__cxa_atexit"](callback, None, ctypes.byref(key))
+    try:
+        yield
+    finally:
+        inside = False
+        libc["__cxa_finalize"](ctypes.byref(key))  # calls it, in vain, and forgets it: Python may be gone at exit
