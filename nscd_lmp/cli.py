@@ -22,9 +22,8 @@ NEGATIVE_NUMBER = re.compile(r"-\.?\d")
 def find_commands() -> dict[str, ModuleType]:
     """Return the modules of the subcommands by name; a leading underscore marks what they share."""
     names = [module.name for module in pkgutil.iter_modules(commands.__path__)]
-    return {
-        name: importlib.import_module(f"{commands.__name__}.{name}") for name in names if not name.startswith("_")
-    }
+    subcommands = [name for name in names if not name.startswith("_")]
+    return {name: importlib.import_module(f"{commands.__name__}.{name}") for name in subcommands}
 
 
 def new_parser() -> argparse.ArgumentParser:
@@ -35,7 +34,10 @@ def new_parser() -> argparse.ArgumentParser:
     for name, module in find_commands().items():
         text = module.__doc__ or ""
         command = subparsers.add_parser(
-            name, help=text.splitlines()[0], description=text, formatter_class=argparse.RawDescriptionHelpFormatter
+            name,
+            help=text.splitlines()[0],
+            description=text,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         command._negative_number_matcher = NEGATIVE_NUMBER
         module.add_arguments(command)
@@ -54,8 +56,8 @@ def main(words: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit code: 0, 1 after an error, 130 after Ctrl-C. A script that ends by LAMMPS' ``quit N`` does not return:
-        the process then ends with code N.
+        Exit code: 0, 1 after an error, 130 after Ctrl-C. With a script that ends by LAMMPS' ``quit N`` this
+        does not return: the process ends with code N.
     """
     arguments = new_parser().parse_args(words)
     try:

@@ -1,5 +1,5 @@
 """The subcommands of ``nscd-lmp``.
 
-A module ``x`` here is the subcommand ``nscd-lmp x``: its docstring is the help text, ``add_arguments(parser)`` declares
-its options and ``main(arguments)`` runs it. Nothing else needs to know of it.
+A module ``x`` here is the subcommand ``nscd-lmp x``: its docstring is the help text,
+``add_arguments(parser)`` declares its options and ``main(arguments)`` runs it. Nothing else knows of it.
 """

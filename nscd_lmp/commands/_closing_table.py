@@ -26,13 +26,18 @@ def closing_table(counts: Counts, seconds: float) -> Table:
     table.add_row("steps", f"{steps:.0f}")
     table.add_row("wall time", f"{seconds:.2f} s")
     table.add_row("speed", f"{steps / seconds:.4g} steps/s", end_section=True)
-    lammps = seconds - counts.seconds_contacts - counts.seconds_solver
-    for name, part in (("LAMMPS", lammps), ("contacts", counts.seconds_contacts), ("solver", counts.seconds_solver)):
+    contacts, solver = counts.seconds_contacts, counts.seconds_solver
+    for name, part in (
+        ("LAMMPS", seconds - contacts - solver),
+        ("contacts", contacts),
+        ("solver", solver),
+    ):
         table.add_row(f"time in {name}", f"{part:.2f} s  {part / seconds:5.1%}")
     table.rows[-1].end_section = True
     table.add_row("contacts in the last step", f"{counts.step_contacts:.0f}")
     table.add_row("mean iterations per step", f"{counts.iterations / steps:.1f}")
-    table.add_row("steps above tol", f"{counts.unconverged_steps:.0f}  {counts.unconverged_steps / steps:5.1%}")
+    unconverged = counts.unconverged_steps
+    table.add_row("steps above tol", f"{unconverged:.0f}  {unconverged / steps:5.1%}")
     table.add_row("worst overlap", f"{counts.worst_overlap:.3g} m")
     table.add_row("worst overlap / radius", f"{counts.worst_overlap_ratio:.3g}")
     table.add_row("energy dissipated by contacts", f"{counts.dissipated_energy:.4g} J")

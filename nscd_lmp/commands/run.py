@@ -1,8 +1,9 @@
 """Run a LAMMPS script with a progress bar and a closing table.
 
-The script runs in this process, as by `lmp -in SCRIPT -var ...`, and knows fix nscd. What LAMMPS prints is in its log
-file; --screen shows it here, in place of the bar. Ctrl-C ends the run after the step at hand and goes on with the
-commands behind it, so that what the script writes at its end is written; Ctrl-C again ends at once.
+The script runs in this process as by `lmp -in SCRIPT -var ...`. What LAMMPS prints
+is in its log file; --screen shows it here, in place of the bar. Ctrl-C ends the run
+after a whole step and goes on with the commands behind it, so that what the script
+writes at its end is written; Ctrl-C again ends at once.
 """
 
 import argparse
@@ -25,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="set an index variable of the script, as lmp does; repeatable",
     )
     parser.add_argument("--log", metavar="FILE", help="LAMMPS' log file, none for no log [log.lammps]")
-    parser.add_argument("--screen", action="store_true", help="show what LAMMPS prints instead of a progress bar")
+    parser.add_argument("--screen", action="store_true", help="show what LAMMPS prints, without a bar")
 
 
 def main(arguments: argparse.Namespace) -> None:

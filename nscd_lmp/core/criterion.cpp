@@ -1,11 +1,12 @@
 #include "criterion.hpp"
+#include "hot.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace nscd {
 
-Criterion measure(const Problem &problem, const double *local_velocity)
+NSCD_HOT Criterion measure(const Problem &problem, const double *local_velocity)
 {
   Criterion sum;
   double natural = 0;

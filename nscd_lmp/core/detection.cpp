@@ -1,6 +1,7 @@
 #include "detection.hpp"
 
 #include "error.hpp"
+#include "hot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +59,7 @@ void add_pair(State &s, int i, int j, const Vec4 &separation, double distance_sq
 
 // All listed pairs that are near enough to watch, into s.found. Most are not, and a branch on that would be
 // mispredicted, so every pair is stored and the counter moves on or not.
-void filter_pairs(State &s, const PairList &pairs)
+NSCD_HOT void filter_pairs(State &s, const PairList &pairs)
 {
   const Sphere *const spheres = s.spheres.data();
   std::size_t kept = 0;
@@ -80,7 +81,7 @@ void filter_pairs(State &s, const PairList &pairs)
   s.found_count = kept;
 }
 
-void detect_pairs(State &s, const PairList &pairs)
+NSCD_HOT void detect_pairs(State &s, const PairList &pairs)
 {
   filter_pairs(s, pairs);
   for (std::size_t k = 0; k < s.found_count; ++k) {
@@ -160,7 +161,7 @@ bool promote_pair(State &s, const NearPair &near)
 // the sweep count within 1 %); more places than 8 gain nothing.
 constexpr std::size_t streams = 8;
 
-void interleave(State &s)
+NSCD_HOT void interleave(State &s)
 {
   const std::size_t n = s.contacts.size(), length = (n + streams - 1) / streams;
   s.listed_contacts.swap(s.contacts);

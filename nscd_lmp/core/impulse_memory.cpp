@@ -21,12 +21,11 @@ void ImpulseMemory::remember(std::span<const Contact> contacts, std::span<const 
   forget();
   const std::size_t last = table_.size() - 1;
   for (std::size_t k = 0; k < contacts.size(); ++k) {
-    if (contacts[k].impulse == 0) continue;
     std::size_t s = slot(infos[k].key);
     while (table_[s].key != 0) s = (s + 1) & last;
     table_[s] = {infos[k].key, contacts[k].impulse};
-    ++used_;
   }
+  used_ = contacts.size();
 }
 
 double ImpulseMemory::recall(std::uint64_t key) const

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "solver.hpp"
+#include "hot.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -23,7 +24,7 @@ struct Local {
 
 // One sweep. Returns the sum over the contacts of the velocity that each visit corrected, m/s.
 template <class Law>
-double sweep(Problem &problem, [[maybe_unused]] double *carried, double parameter)
+NSCD_HOT double sweep(Problem &problem, [[maybe_unused]] double *carried, double parameter)
 {
   Body *const bodies = problem.bodies.data();
   Contact *const contacts = problem.contacts.data();

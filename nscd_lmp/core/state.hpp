@@ -1,6 +1,7 @@
 // Everything one step works on: the arrays it was handed, and its own, kept from step to step.
 #pragma once
 
+#include "aligned.hpp"
 #include "contact.hpp"
 #include "settings.hpp"
 #include "views.hpp"
@@ -11,7 +12,7 @@
 namespace nscd {
 
 // Centre and radius of an atom where contacts are sought; `reach` widens the search, 0 for law moreau.
-struct Sphere {
+struct alignas(32) Sphere {
   Vec4 centre;  // fourth component 0
   double radius;
   double reach;
@@ -29,7 +30,7 @@ struct State {
 
   std::vector<Sphere> spheres;      // (owned + ghosts)
   std::vector<int> owner;           // (owned + ghosts) index of the body that an atom is (an image of)
-  std::vector<Body> bodies;         // (owned + obstacle_copies)
+  AlignedVector<Body> bodies;        // (owned + obstacle_copies)
   std::vector<Contact> contacts;
   std::vector<ContactInfo> infos;   // beside contacts
   std::vector<NearPair> found;           // listed pairs that are near enough, the first found_count entries
@@ -38,7 +39,7 @@ struct State {
   std::vector<Contact> listed_contacts;  // as found, before they are brought into the order of the sweep
   std::vector<ContactInfo> listed_infos;
   std::vector<NearPair> near;       // watched by law gap: made contacts if the solution drives them together
-  std::vector<Vec4> displacement;   // (owned) from where contacts were sought to q_{k+1}
+  AlignedVector<Vec4> displacement;  // (owned) from where contacts were sought to q_{k+1}
 
   double watch = 0;                 // surface distance within which pairs are watched, m
   double smooth_kick = 0;           // largest |dt f / m| of the step, m/s

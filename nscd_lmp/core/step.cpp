@@ -2,6 +2,7 @@
 
 #include "detection.hpp"
 #include "error.hpp"
+#include "hot.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -81,7 +82,7 @@ void Step::refuse(int i) const
   fail("grain ", g.tag[i], " has a position, velocity or force that is not a finite number");
 }
 
-void Step::gather(const Grains &grains)
+NSCD_HOT void Step::gather(const Grains &grains)
 {
   state_.grains = grains;
   const int owned = grains.owned, all = owned + grains.ghosts;
@@ -154,7 +155,7 @@ double Step::free_norm(std::span<const Contact> contacts) const
 }
 
 // Biases and start impulses of the contacts from `first` on.
-void Step::start_contacts(std::size_t first)
+NSCD_HOT void Step::start_contacts(std::size_t first)
 {
   law_->set_bias(state_, first);
   const auto added = std::span(state_.contacts).subspan(first);
@@ -163,7 +164,7 @@ void Step::start_contacts(std::size_t first)
   for (std::size_t k = first; k < state_.contacts.size(); ++k) {
     Contact &c = state_.contacts[k];
     c.impulse = memory_.recall(state_.infos[k].key);
-    if (c.impulse != 0) apply_impulse(c, c.impulse, state_.bodies.data());
+    apply_impulse(c, c.impulse, state_.bodies.data());
   }
 }
 
@@ -241,7 +242,7 @@ void Step::finish()
 }
 
 // Overlap at q_{k+1}, and the energy the contacts took: -sum p (v_n^k + v_n^{k+1}) / 2, exact for any step.
-void Step::tally_contacts()
+NSCD_HOT void Step::tally_contacts()
 {
   const State &s = state_;
   double overlap = 0, ratio = 0, work = 0;
