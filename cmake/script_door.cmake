@@ -17,7 +17,7 @@ string(REGEX MATCH "^([0-9]+)\\.([0-9]+)\\.([0-9]+)" unused "${lammps_release}")
 math(EXPR lammps_number "${CMAKE_MATCH_1} * 10000 + ${CMAKE_MATCH_2} * 100 + ${CMAKE_MATCH_3}")
 
 add_library(nscdplugin MODULE nscd_lmp/plugin/plugin.cpp nscd_lmp/plugin/fix_nscd.cpp)
-set_target_properties(nscdplugin PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET default)
+set_target_properties(nscdplugin PROPERTIES PREFIX "")
 target_include_directories(nscdplugin SYSTEM PRIVATE ${lammps_include} ${mpi_include})
 target_compile_definitions(nscdplugin PRIVATE NSCD_LAMMPS_VERSION=${lammps_number})
 target_compile_options(nscdplugin PRIVATE -Wall -Wextra -Wno-psabi -fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=)

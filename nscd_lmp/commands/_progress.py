@@ -96,7 +96,7 @@ class RunBar(NoWatch):
 class _BarWithLine(Progress):
     """A progress bar with a line of text below."""
 
-    line = "setting up"
+    line = "no step by fix nscd yet"
 
     def get_renderables(self) -> Iterable[RenderableType]:
         yield self.make_tasks_table(self.tasks)
@@ -127,7 +127,7 @@ class RunLines(NoWatch):
 def _numbers(counts: Counts, speed: float | None) -> list[str]:
     return [
         f"time {counts.time:.4g}",
-        f"{speed or 0:.3g} steps/s",
+        *([f"{speed:.3g} steps/s"] if speed else []),
         f"{counts.step_contacts:.0f} contacts",
         f"{counts.step_iterations:.0f} iterations",
     ]

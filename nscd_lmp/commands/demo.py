@@ -1,8 +1,8 @@
 """Run the sedimentation of 500 balls and picture the bed.
 
 The scene of Barboteu and Dumont (2017), section 5.2, by contact law gap at time
-steps of 2e-4 s: balls fall into a box until they rest. Writes a dump, a log and three
-pictures.
+steps of 2e-4 s: balls fall into a box until they rest. Writes a dump, a log and
+three pictures.
 """
 
 import argparse

@@ -38,6 +38,7 @@ auto or_stop(Error *error, const char *id, Body body)
 FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 {
   time_integrate = 1;
+  dynamic_group_allow = 1;
   force_reneighbor = 1;
   next_reneighbor = -1;
   scalar_flag = vector_flag = array_flag = local_flag = 1;

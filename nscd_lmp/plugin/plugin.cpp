@@ -33,7 +33,7 @@ void *make_fix_nscd(LAMMPS_NS::LAMMPS *lmp, int narg, char **arg) { return new L
 
 }    // namespace
 
-extern "C" void lammpsplugin_init(void *lmp, void *handle, void *regfunc)
+extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *lmp, void *handle, void *regfunc)
 {
   const int running = lammps_version(lmp);
   if (running != NSCD_LAMMPS_VERSION) {
