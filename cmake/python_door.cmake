@@ -8,5 +8,6 @@ nanobind_add_module(_core NB_STATIC nscd_lmp/bindings/module.cpp nscd_lmp/bindin
 target_compile_options(_core PRIVATE -Wno-psabi)
 target_link_libraries(_core PRIVATE nscd_core)
 nanobind_add_stub(_core_stub MODULE _core OUTPUT _core.pyi PYTHON_PATH $<TARGET_FILE_DIR:_core> DEPENDS _core)
+export_only(_core PyInit__core)
 install(TARGETS _core LIBRARY DESTINATION nscd_lmp)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/_core.pyi DESTINATION nscd_lmp)

@@ -5,8 +5,9 @@ import tempfile
 import threading
 import time
 from collections.abc import Sequence
+from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from mpi4py import MPI
 from rich.console import Console
@@ -49,8 +50,13 @@ def run_script(
         raise ScriptError(f"there is no script '{script}' in {Path.cwd()}: give the path of an existing file")
     words = [word for variable in variables for word in ("-var", *variable)]
     words += ["-log", log] if log else []
-    with tempfile.TemporaryDirectory(prefix="nscd") as folder:
-        run = _ScriptRun(script, words, None if screen else Path(folder) / "screen")
+    # A file without a name: nothing is left behind, however the process ends.
+    with (
+        nullcontext()
+        if screen
+        else tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as output
+    ):
+        run = _ScriptRun(script, words, output)
         with at_quit(run.report):
             run.watch()
         run.report()
@@ -61,17 +67,18 @@ def run_script(
 
 
 class _ScriptRun:
-    """A script on its way through LAMMPS; `screen` is the file for what LAMMPS prints."""
+    """A script on its way through LAMMPS; what LAMMPS prints goes to the file `output`, if given."""
 
-    def __init__(self, script: Path, words: list[str], screen: Path | None) -> None:
+    def __init__(self, script: Path, words: list[str], output: IO[str] | None) -> None:
         self.script = script
-        self.words = words + (["-screen", str(screen)] if screen else [])
-        self.screen = screen
+        self.words = words + (["-screen", f"/dev/fd/{output.fileno()}"] if output else [])
+        self.output = output
         first_rank = MPI.COMM_WORLD.Get_rank() == 0
         self.console = Console(quiet=not first_rank, highlight=False)
         self.errors = Console(quiet=not first_rank, highlight=False, stderr=True)
         self.lmp: Any = None
         self.counts = Counts()  # zeros, until LAMMPS has loaded the plugin
+        self.ended = threading.Event()  # Thread.join takes a thread for ended when Ctrl-C interrupts it
         self.failure = ""
         self.interrupted = False
         self.started_at = time.monotonic()
@@ -79,13 +86,12 @@ class _ScriptRun:
     def watch(self) -> None:
         """Have the script run in a thread; this one shows how far it is, and takes Ctrl-C."""
         self.console.print(f"[bold]{self.script.name}[/]")
-        watch = NoWatch() if not self.screen else RunBar() if self.console.is_terminal else RunLines()
-        worker = threading.Thread(target=self.work, daemon=True)
-        worker.start()
+        watch = NoWatch() if not self.output else RunBar() if self.console.is_terminal else RunLines()
+        threading.Thread(target=self.work, daemon=True).start()
         with watch.on(self.console):
-            while worker.is_alive():
+            while not self.ended.is_set():
                 try:
-                    worker.join(SECONDS_BETWEEN_LOOKS)
+                    self.ended.wait(SECONDS_BETWEEN_LOOKS)
                     watch.show(self.counts)
                 except KeyboardInterrupt:
                     self.interrupt()
@@ -106,9 +112,11 @@ class _ScriptRun:
             self.started_at = time.monotonic()
             self.lmp.file(str(self.script))
         except Exception as error:  # LAMMPS raises no other type
-            self.failure = str(error) if self.lmp else self.first_line_with("ERROR") or str(error)
-        if self.lmp:
-            self.lmp.close()
+            self.failure = str(error) if self.lmp else self.printed("ERROR") or str(error)
+        finally:
+            if self.lmp:
+                self.lmp.close()
+            self.ended.set()
 
     def interrupt(self) -> None:
         """Have LAMMPS end this run and all later ones after a whole step; the second time end the process."""
@@ -122,18 +130,15 @@ class _ScriptRun:
     def report(self) -> None:
         """Print LAMMPS' warnings, and the closing table unless the script failed before any step."""
         seconds = time.monotonic() - self.started_at
-        for line in self.screen_lines():
-            if line.startswith("WARNING"):
-                self.errors.print(line, markup=False, soft_wrap=True)
+        warnings = self.printed("WARNING")
+        if warnings:
+            self.errors.print(warnings, markup=False, soft_wrap=True)
         if self.counts.steps or not self.failure:
             self.console.print(closing_table(self.counts, seconds))
 
-    def screen_lines(self) -> list[str]:
-        """Return what LAMMPS has printed, where that went to a file."""
-        if not (self.screen and self.screen.is_file()):
-            return []
-        return self.screen.read_text(encoding="utf-8", errors="replace").splitlines()
-
-    def first_line_with(self, word: str) -> str:
-        """Return the first line of LAMMPS' output that has the word."""
-        return next((line for line in self.screen_lines() if word in line), "")
+    def printed(self, first_word: str) -> str:
+        """Return those lines of LAMMPS' output that begin so."""
+        if not self.output:
+            return ""
+        self.output.seek(0)
+        return "".join(line for line in self.output if line.startswith(first_word)).rstrip()
