@@ -2,7 +2,7 @@
 
 from rich.table import Table
 
-from nscd_lmp.commands._progress import Counts
+from nscd_lmp.commands._progress import Counts, format_speed
 
 
 def closing_table(counts: Counts, seconds: float) -> Table:
@@ -25,7 +25,7 @@ def closing_table(counts: Counts, seconds: float) -> Table:
     steps = counts.steps
     table.add_row("steps", f"{steps:.0f}")
     table.add_row("wall time", f"{seconds:.2f} s")
-    table.add_row("speed", f"{steps / seconds:.4g} steps/s", end_section=True)
+    table.add_row("speed", format_speed(steps / seconds), end_section=True)
     contacts, solver = counts.seconds_contacts, counts.seconds_solver
     for name, part in (
         ("LAMMPS", seconds - contacts - solver),

@@ -124,10 +124,15 @@ class RunLines(NoWatch):
         self.console.print(", ".join([place, *_numbers(counts, speed)]), soft_wrap=True)
 
 
+def format_speed(speed: float) -> str:
+    """Return steps per second, to three digits at least, without an exponent."""
+    return f"{speed:.3g} steps/s" if speed < 100 else f"{speed:.0f} steps/s"
+
+
 def _numbers(counts: Counts, speed: float | None) -> list[str]:
     return [
         f"time {counts.time:.4g}",
-        *([f"{speed:.3g} steps/s"] if speed else []),
+        *([format_speed(speed)] if speed else []),
         f"{counts.step_contacts:.0f} contacts",
         f"{counts.step_iterations:.0f} iterations",
     ]

@@ -126,6 +126,7 @@ class _ScriptRun:
         self.interrupted = True
         if self.lmp:
             self.lmp.force_timeout()
+        self.console.print("stopping after this step; Ctrl-C again ends the program at once")
 
     def report(self) -> None:
         """Print LAMMPS' warnings, and the closing table unless the script failed before any step."""

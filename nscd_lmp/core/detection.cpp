@@ -22,7 +22,7 @@ std::uint64_t wall_key(std::int32_t tag, std::size_t wall)
   return (std::uint64_t(1) << 63) | (std::uint64_t(wall) << 32) | std::uint32_t(tag);
 }
 
-double start_velocity(const State &s, const Vec4 &n, int i, int j)
+NSCD_INLINE double start_velocity(const State &s, const Vec4 &n, int i, int j)
 {
   const double *vi = s.grains.v + 3 * std::size_t(i);
   double u = n[0] * vi[0] + n[1] * vi[1] + n[2] * vi[2];
@@ -31,7 +31,7 @@ double start_velocity(const State &s, const Vec4 &n, int i, int j)
   return u - (n[0] * vj[0] + n[1] * vj[1] + n[2] * vj[2]);
 }
 
-void add_contact(State &s, const Vec4 &normal, double w, int body_i, int body_j)
+NSCD_INLINE void add_contact(State &s, const Vec4 &normal, double w, int body_i, int body_j)
 {
   s.contacts.push_back({normal, 0.0, 1 / w, 0.0, body_i, body_j});
 }
@@ -44,7 +44,7 @@ void add_contact(State &s, const Vec4 &normal, double w, int body_i, int body_j)
        ": remove one of them, or take a smaller timestep if they were apart before");
 }
 
-void add_pair(State &s, int i, int j, const Vec4 &separation, double distance_squared)
+NSCD_INLINE void add_pair(State &s, int i, int j, const Vec4 &separation, double distance_squared)
 {
   const int bi = s.owner[i], bj = s.owner[j];
   const double w = s.bodies[bi][3] + s.bodies[bj][3];

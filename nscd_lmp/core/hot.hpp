@@ -9,3 +9,6 @@
 #else
 #define NSCD_HOT
 #endif
+
+// For what a hot loop calls: it must be compiled with the loop, for the same instruction set.
+#define NSCD_INLINE inline __attribute__((always_inline))

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 namespace nscd {
 
@@ -41,7 +42,9 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
 {
   const auto start = Clock::now();
   state_.dt = dt;
-  gather(grains);
+  state_.grains = grains;
+  if (pairs.just_built || fresh_list_) take_list();
+  gather();
   check_reach(pairs);
   detect(state_, pairs);
   solve();
@@ -49,6 +52,15 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
   write_back(pairs);
   report_.seconds_contacts = seconds(start, Clock::now()) - report_.seconds_solver;
   return report_;
+}
+
+// What holds until the neighbor list is rebuilt.
+void Step::take_list()
+{
+  const double *x = state_.grains.x;
+  listed_x_.assign(x, x + 3 * std::size_t(state_.grains.owned));
+  find_owners();
+  fresh_list_ = false;
 }
 
 // Free velocity (14) and predicted centre (18) of one grain.
@@ -82,29 +94,27 @@ void Step::refuse(int i) const
   fail("grain ", g.tag[i], " has a position, velocity or force that is not a finite number");
 }
 
-NSCD_HOT void Step::gather(const Grains &grains)
+NSCD_HOT void Step::gather()
 {
-  state_.grains = grains;
+  const Grains &grains = state_.grains;
   const int owned = grains.owned, all = owned + grains.ghosts;
   state_.spheres.resize(all);
-  state_.owner.resize(all);
   state_.bodies.resize(owned + obstacle_copies);
   state_.displacement.resize(owned);
   largest_kick2_ = largest_speed2_ = 0;
-  for (int i = 0; i < owned; ++i) {
-    load_body(i);
-    state_.owner[i] = i;
-  }
+  for (int i = 0; i < owned; ++i) load_body(i);
   std::fill(state_.bodies.begin() + owned, state_.bodies.end(), Body{});
   state_.smooth_kick = std::sqrt(largest_kick2_);
   state_.watch = watched_moves * state_.dt * look_ahead_ * std::sqrt(largest_speed2_);
-  find_owners();
+  place_images();
 }
 
-// On one rank the grain of every image is at home: images take its velocity, so ghosts need none of their own.
+// On one rank the grain of every image is at home. Which it is stays the same until the neighbor list is rebuilt.
 void Step::find_owners()
 {
   const Grains &g = state_.grains;
+  state_.owner.resize(std::size_t(g.owned) + g.ghosts);
+  std::iota(state_.owner.begin(), state_.owner.begin() + g.owned, 0);
   if (g.ghosts == 0) return;
   by_tag_.resize(g.owned);
   for (int i = 0; i < g.owned; ++i) by_tag_[i] = {g.tag[i], i};
@@ -112,7 +122,16 @@ void Step::find_owners()
   for (int j = g.owned; j < g.owned + g.ghosts; ++j) {
     const auto at = std::lower_bound(by_tag_.begin(), by_tag_.end(), std::pair<std::int32_t, int>{g.tag[j], 0});
     if (at == by_tag_.end() || at->first != g.tag[j]) fail("image of grain ", g.tag[j], " has no grain on this rank");
-    const int i = state_.owner[j] = at->second;
+    state_.owner[j] = at->second;
+  }
+}
+
+// Images take their grain's velocity, so ghosts need none of their own.
+void Step::place_images()
+{
+  const Grains &g = state_.grains;
+  for (int j = g.owned; j < g.owned + g.ghosts; ++j) {
+    const int i = state_.owner[j];
     const double *xi = g.x + 3 * std::size_t(i), *xj = g.x + 3 * std::size_t(j);
     const Vec4 shift{xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2], 0};
     state_.spheres[j] = {state_.spheres[i].centre + shift, g.radius[i], state_.spheres[i].reach};
@@ -133,14 +152,12 @@ double Step::farthest_since_listed() const
 // The list holds all pairs up to `reach` apart when it was built; since then grains moved, and they look ahead.
 void Step::check_reach(const PairList &pairs)
 {
-  if (pairs.just_built || fresh_list_) listed_x_.assign(state_.grains.x, state_.grains.x + 3 * std::size_t(state_.grains.owned));
-  fresh_list_ = false;
   const double moved = farthest_since_listed(), speed = std::sqrt(largest_speed2_), ahead = longest_move(speed);
   if (2 * (moved + ahead) > pairs.reach * (1 + 1e-12))
-    fail("contacts could be missed: grains have moved up to ", moved, " since the neighbor list was built and look ahead ",
-         ahead, " (dt v, v = ", speed, "), but it holds pairs only up to ", pairs.reach,
-         " apart: raise the cutoff of the pair style by at least ", 2 * (moved + ahead) - pairs.reach,
-         ", or use a larger neighbor skin or a smaller timestep");
+    fail("contacts could be missed: two grains can be ", 2 * (moved + ahead), " nearer than when the neighbor list was "
+         "built (moved ", moved, " each, and dt v = ", ahead, " with v = ", speed, "), but it holds pairs only up to ",
+         pairs.reach, " apart: raise the cutoff of the pair style by 2 dt v of the fastest grain, or use a larger "
+         "neighbor skin or a smaller timestep");
 }
 
 // ||v + bias||_2 over the contacts, with the bodies as they are, m/s.
@@ -181,10 +198,10 @@ void Step::ask_custom(std::span<Contact> contacts, std::span<const ContactInfo> 
 }
 
 void Step::solve_part(std::span<Contact> contacts, std::span<const ContactInfo> infos, double restitution,
-                      double free_norm)
+                      double norm)
 {
   const auto start = Clock::now();
-  Problem problem{state_.bodies, contacts, restitution, free_norm, workspace_};
+  Problem problem{state_.bodies, contacts, restitution, norm, workspace_};
   SolverReport solved;
   if (custom_) {
     ask_custom(contacts, infos);
@@ -196,7 +213,8 @@ void Step::solve_part(std::span<Contact> contacts, std::span<const ContactInfo> 
   }
   report_.seconds_solver += seconds(start, Clock::now());
   if (!std::isfinite(solved.criterion.total()))
-    fail("solver ", settings_.solver, " diverged: the criterion is not a number; take rho or gamma closer to its default");
+    fail("solver ", settings_.solver,
+         " diverged: the criterion is not a number; take rho or gamma closer to its default");
   report_.iterations += solved.iterations;
   report_.criterion = solved.criterion;
   report_.converged = report_.converged && solved.converged;

@@ -58,17 +58,19 @@ class Step {
   bool wants_rebuild() const { return wants_rebuild_; }
 
  private:
-  void gather(const Grains &grains);
+  void take_list();
+  void gather();
   void load_body(int i);
   void refuse(int i) const;
   void find_owners();
+  void place_images();
   void check_reach(const PairList &pairs);
   // How far around q_k contacts are sought, m, for a grain of this speed.
   double longest_move(double speed) const { return state_.dt * speed * (look_ahead_ + prediction_); }
   void start_contacts(std::size_t first);
   void solve();
   void judge();
-  void solve_part(std::span<Contact> contacts, std::span<const ContactInfo> infos, double restitution, double free_norm);
+  void solve_part(std::span<Contact> contacts, std::span<const ContactInfo> infos, double restitution, double norm);
   void ask_custom(std::span<Contact> contacts, std::span<const ContactInfo> infos);
   double free_norm(std::span<const Contact> contacts) const;
   void finish();

@@ -19,7 +19,7 @@ struct Pdas {
   {
     const double exact = now.impulse - v * w_inverse;
     const double tau = now.impulse - gamma * v * w_inverse;
-    return {tau >= 0 ? exact : 0.0, 0.0};
+    return {__builtin_expect_with_probability(tau >= 0, 1, 0.5) ? exact : 0.0, 0.0};
   }
 };
 
