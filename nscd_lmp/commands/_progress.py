@@ -15,6 +15,21 @@ from nscd_lmp.plugin_path import plugin_folder
 SECONDS_BETWEEN_LINES = 10.0
 
 
+# over all steps of all fixes nscd of this process
+TOTALS = (
+    "steps",
+    "seconds_contacts",
+    "seconds_solver",
+    "worst_overlap",
+    "worst_overlap_ratio",
+    "iterations",
+    "unconverged_steps",
+    "dissipated_energy",
+)
+# of the run that is on, or the last one
+RUN = ("first_step", "last_step", "step", "time", "step_contacts", "step_iterations")
+
+
 class Counts(ctypes.Structure):
     """What ``fix nscd`` publishes; plugin/progress.hpp has the same numbers in the same order.
 
@@ -22,24 +37,7 @@ class Counts(ctypes.Structure):
     serve here: a second thread could meet a fix, or all of LAMMPS, as ``unfix`` or ``clear`` takes it apart.
     """
 
-    # over all steps of all fixes nscd of this process
-    steps: float
-    seconds_contacts: float
-    seconds_solver: float
-    worst_overlap: float
-    worst_overlap_ratio: float
-    iterations: float
-    unconverged_steps: float
-    dissipated_energy: float
-    # of the run that is on, or the last one
-    first_step: float
-    last_step: float
-    step: float
-    time: float
-    step_contacts: float
-    step_iterations: float
-
-    _fields_ = tuple((name, ctypes.c_double) for name in __annotations__)
+    _fields_ = tuple((name, ctypes.c_double) for name in (*TOTALS, *RUN))
 
 
 def zeroed_counts() -> Counts:

@@ -5,7 +5,6 @@ import tempfile
 import threading
 import time
 from collections.abc import Sequence
-from contextlib import nullcontext
 from pathlib import Path
 from typing import IO, Any
 
@@ -51,12 +50,8 @@ def run_script(
     words = [word for variable in variables for word in ("-var", *variable)]
     words += ["-log", log] if log else []
     # A file without a name: nothing is left behind, however the process ends.
-    with (
-        nullcontext()
-        if screen
-        else tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as output
-    ):
-        run = _ScriptRun(script, words, output)
+    with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as output:
+        run = _ScriptRun(script, words, None if screen else output)
         with at_quit(run.report):
             run.watch()
         run.report()

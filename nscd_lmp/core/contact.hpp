@@ -29,13 +29,17 @@ struct alignas(64) Contact {
 };
 static_assert(sizeof(Contact) == 64);
 
+// A pair of atoms, indices into the arrays of all atoms (ghosts too), or an atom and wall -1 - atom_j.
+struct Candidate {
+  std::int32_t atom_i, atom_j;
+};
+
 // What a contact needs outside the sweep.
 struct ContactInfo {
-  double gap;          // m, negative when overlapping; at detection, then at the end of the step
-  double speed_before; // n.(v_i - v_j) at the start of the step, m/s
-  std::uint64_t key;   // the pair's tags, or tag and wall: identifies the contact across steps
-  std::int32_t atom_i; // index into the arrays of all atoms (ghosts too)
-  std::int32_t atom_j; // the same, or -1 - wall
+  double gap;           // m, negative when overlapping; at detection, then at the end of the step
+  double speed_before;  // n.(v_i - v_j) at the start of the step, m/s
+  std::uint64_t key;    // identifies the contact across steps
+  std::int32_t atom_i, atom_j;  // as in Candidate
 };
 
 inline double dot(const Vec4 &a, const Vec4 &b)

@@ -5,13 +5,12 @@
 
 namespace nscd {
 
-// Fills state.contacts and state.infos (gap, speed_before, key, atoms) with every pair and wall contact whose
-// gap is at most the reach of its atoms. Impulses and biases are left 0. In the order of the pair list, walls last.
+// Fills state.contacts and state.infos with every pair and wall contact whose gap is at most the reach of its atoms.
+// Impulses and biases are left 0. Candidates beyond that but within state.watch go to state.near.
 // Raises Error for an overlap beyond the smaller radius.
-// Pairs beyond that but within state.watch go to state.near.
 void detect(State &state, const PairList &pairs);
 
-// Watched pairs that state.displacement would make overlap become contacts, at the end of state.contacts.
+// Watched candidates that state.displacement would make overlap become contacts, at the end of state.contacts.
 // Returns how many.
 std::size_t promote_near(State &state);
 

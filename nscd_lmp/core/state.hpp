@@ -18,31 +18,26 @@ struct alignas(32) Sphere {
   double reach;
 };
 
-// A pair, or an atom and wall -1 - atom_j, too far apart for a contact but near enough to watch.
-struct NearPair {
-  int atom_i, atom_j;
-};
-
 struct State {
   const Settings &settings;
   Grains grains;
   double dt = 0;
 
-  std::vector<Sphere> spheres;      // (owned + ghosts)
-  std::vector<int> owner;           // (owned + ghosts) index of the body that an atom is (an image of)
-  AlignedVector<Body> bodies;        // (owned + obstacle_copies)
+  std::vector<Sphere> spheres;         // (owned + ghosts)
+  std::vector<int> owner;              // (owned + ghosts) index of the body that an atom is (an image of)
+  AlignedVector<Body> bodies;          // (owned + obstacle_copies)
+  AlignedVector<Vec4> displacement;    // (owned) from where contacts were sought to q_{k+1}
   std::vector<Contact> contacts;
-  std::vector<ContactInfo> infos;   // beside contacts
-  std::vector<NearPair> found;           // listed pairs that are near enough, the first found_count entries
-  std::size_t found_count = 0;
-  std::vector<double> impact_impulse;    // N s per contact, of impacts resolved ahead of the contacts; or empty
-  std::vector<Contact> listed_contacts;  // as found, before they are brought into the order of the sweep
-  std::vector<ContactInfo> listed_infos;
-  std::vector<NearPair> near;       // watched by law gap: made contacts if the solution drives them together
-  AlignedVector<Vec4> displacement;  // (owned) from where contacts were sought to q_{k+1}
+  std::vector<ContactInfo> infos;      // beside contacts
+  std::vector<double> impact_impulse;  // beside contacts, N s, of impacts resolved ahead of them; or empty
 
-  double watch = 0;                 // surface distance within which pairs are watched, m
-  double smooth_kick = 0;           // largest |dt f / m| of the step, m/s
+  std::vector<Candidate> found;        // listed pairs that are near enough to watch, the first found_count
+  std::size_t found_count = 0;
+  std::vector<Candidate> touching;     // contacts-to-be, in list order
+  std::vector<Candidate> near;         // watched by law gap: made contacts if the solution drives them together
+
+  double watch = 0;                    // surface distance within which pairs are watched, m
+  double smooth_kick = 0;              // largest |dt f / m| of the step, m/s
 };
 
 // Walls are bodies of infinite mass. Several copies, used in turn: consecutive wall contacts then do not wait

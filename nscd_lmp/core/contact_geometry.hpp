@@ -1,0 +1,85 @@
+// From a pair of atoms, or an atom and a wall, to a contact: gap, normal, bodies, W_nn.
+#pragma once
+
+#include "error.hpp"
+#include "hot.hpp"
+#include "state.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nscd {
+
+inline bool is_wall(const Candidate &candidate) { return candidate.atom_j < 0; }
+inline int wall_index(const Candidate &candidate) { return -1 - candidate.atom_j; }
+
+// n.x - offset is the height above the plane, m.
+struct Height {
+  Vec4 normal;
+  double offset;
+  explicit Height(const Plane &plane) :
+      normal{plane.normal[0], plane.normal[1], plane.normal[2], 0},
+      offset(dot(normal, Vec4{plane.point[0], plane.point[1], plane.point[2], 0}))
+  {
+  }
+  double of(const Vec4 &centre) const { return dot(normal, centre) - offset; }
+};
+
+// Identifies a contact across steps: a pair's tags in either order, or a tag and a wall. Tags are positive, so the
+// top bit tells the two apart.
+inline std::uint64_t contact_key(const State &s, const Candidate &c)
+{
+  const std::uint32_t tag = s.grains.tag[c.atom_i];
+  if (is_wall(c)) return (std::uint64_t(1) << 63) | (std::uint64_t(wall_index(c)) << 32) | tag;
+  const std::uint32_t other = s.grains.tag[c.atom_j];
+  return (std::uint64_t(std::min(tag, other)) << 32) | std::max(tag, other);
+}
+
+[[noreturn]] inline void refuse_overlap(const State &s, const Candidate &c, double gap)
+{
+  const auto &g = s.grains;
+  if (is_wall(c))
+    fail("grain ", g.tag[c.atom_i], " is ", -gap, " inside wall ", wall_index(c) + 1, ", more than its radius ",
+         g.radius[c.atom_i], ": start it on the side that the wall's normal points to, or take a smaller timestep");
+  fail("grains ", g.tag[c.atom_i], " and ", g.tag[c.atom_j], " overlap by ", -gap, ", more than the smaller radius ",
+       std::min(g.radius[c.atom_i], g.radius[c.atom_j]),
+       ": remove one of them, or take a smaller timestep if they were apart before");
+}
+
+// Velocity of atom i at the start of the step, m/s.
+NSCD_INLINE Vec4 start_velocity(const State &s, int i)
+{
+  const double *v = s.grains.v + 3 * std::size_t(i);
+  return Vec4{v[0], v[1], v[2], 0};
+}
+
+// Fills contact number k. Impulse and bias are left 0. Raises Error for an overlap beyond the smaller radius.
+NSCD_INLINE void place_contact(State &s, std::size_t k, const Candidate &c)
+{
+  const Sphere &a = s.spheres[c.atom_i];
+  const int i = s.owner[c.atom_i];
+  int j;
+  Vec4 normal, before = start_velocity(s, i);
+  double gap, smaller = a.radius;
+  if (is_wall(c)) {
+    const Height height(s.settings.walls[wall_index(c)]);
+    normal = height.normal;
+    gap = height.of(a.centre) - a.radius;
+    j = s.grains.owned + int(k % obstacle_copies);
+  } else {
+    const Sphere &b = s.spheres[c.atom_j];
+    const Vec4 separation = a.centre - b.centre;
+    const double distance = std::sqrt(dot(separation, separation));
+    normal = separation / distance;
+    gap = distance - a.radius - b.radius;
+    smaller = std::min(smaller, b.radius);
+    j = s.owner[c.atom_j];
+    before -= start_velocity(s, j);
+  }
+  if (gap < -smaller) refuse_overlap(s, c, gap);
+  const double w = s.bodies[i][3] + s.bodies[j][3];
+  s.contacts[k] = {normal, 0.0, 1 / w, 0.0, i, j};
+  s.infos[k] = {gap, dot(normal, before), contact_key(s, c), c.atom_i, c.atom_j};
+}
+
+}    // namespace nscd
