@@ -22,5 +22,5 @@ target_include_directories(nscdplugin SYSTEM PRIVATE ${lammps_include} ${mpi_inc
 target_compile_definitions(nscdplugin PRIVATE NSCD_LAMMPS_VERSION=${lammps_number})
 target_compile_options(nscdplugin PRIVATE -Wall -Wextra -Wno-psabi -fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=)
 target_link_libraries(nscdplugin PRIVATE nscd_core)
-export_only(nscdplugin lammpsplugin_init)
+export_only(nscdplugin "lammpsplugin_init; nscd_progress")
 install(TARGETS nscdplugin LIBRARY DESTINATION nscd_lmp/plugin)

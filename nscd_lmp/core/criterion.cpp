@@ -27,7 +27,9 @@ NSCD_HOT Criterion measure(const Problem &problem, const double *local_velocity)
   sum.motion *= scale;
   sum.bipotential *= scale;
   sum.penetration *= scale;
-  sum.relative = natural == 0 ? 0 : std::sqrt(natural) / problem.free_norm;
+  if (natural == 0) return sum;
+  // If nothing drives the contacts, what start impulses have left over is all there is: 1.
+  sum.relative = problem.free_norm > 0 ? std::sqrt(natural) / problem.free_norm : 1;
   return sum;
 }
 

@@ -20,7 +20,8 @@ class Law {
   virtual double prediction(const Settings &) const { return 0; }
   // Whether contacts are sought ahead, within dt times the speeds, or only where spheres touch.
   virtual bool looks_ahead() const { return false; }
-  // Resolves impacts ahead of the contacts, if the law does; the bodies then have the velocities after them.
+  // Whether impacts are resolved ahead of the contacts, from the free velocities of the bodies.
+  virtual bool resolves_impacts(const Settings &) const { return false; }
   virtual void impacts(State &, const SolvePart &) {}
   // Fills the biases of the contacts from `first` on. Bodies have the velocities without these contacts,
   // state.grains.v has v_k.

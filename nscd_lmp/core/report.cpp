@@ -1,6 +1,5 @@
 #include "report.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -22,19 +21,6 @@ double report_column(const StepReport &r, int column)
     case 10: return double(r.unconverged);
   }
   return 0;
-}
-
-void Totals::add(const StepReport &r)
-{
-  auto &[steps, contacts, solver, overlap, ratio, iterations, unconverged, dissipated] = values_;
-  steps += 1;
-  contacts += r.seconds_contacts;
-  solver += r.seconds_solver;
-  overlap = std::max(overlap, r.largest_overlap);
-  ratio = std::max(ratio, r.largest_overlap_ratio);
-  iterations += r.iterations;
-  unconverged += !r.converged;
-  dissipated += r.dissipated_in_step;
 }
 
 void fill_contact_rows(const State &s, double *row)

@@ -41,6 +41,7 @@ void Step::begin_run(bool list_just_built)
 const StepReport &Step::advance(const Grains &grains, const PairList &pairs, double dt)
 {
   const auto start = Clock::now();
+  if (!(dt > 0 && std::isfinite(dt))) fail("the timestep is ", dt, ": it must be > 0");
   state_.dt = dt;
   state_.grains = grains;
   if (pairs.just_built || fresh_list_) take_list();
@@ -74,21 +75,22 @@ void Step::load_body(int i)
   const Vec4 kick = Vec4{f[0], f[1], f[2], 0} * (state_.dt * g.force_to_acceleration * inverse_mass);
   const Vec4 free = before + kick;
   const Vec4 centre = Vec4{x[0], x[1], x[2], 0} + before * (moves ? state_.dt * prediction_ : 0.0);
-  const double speed2 = std::max(dot(before, before), dot(free, free));
+  const double before2 = dot(before, before), free2 = dot(free, free), speed2 = std::max(before2, free2);
   largest_kick2_ = std::max(largest_kick2_, dot(kick, kick));
   largest_speed2_ = std::max(largest_speed2_, speed2);
   state_.spheres[i] = {centre, g.radius[i], state_.dt * look_ahead_ * std::sqrt(speed2)};
   state_.bodies[i] = free + Vec4{0, 0, 0, inverse_mass};
   // One test for all that is wrong: a not-a-number fails every comparison.
-  const bool fit = dot(centre, centre) + speed2 < INFINITY && g.radius[i] > 0 && inverse_mass < INFINITY &&
-      inverse_mass >= 0 && (inverse_mass > 0) == moves;
+  const bool fit = dot(centre, centre) + before2 + free2 < INFINITY && g.radius[i] > 0 && g.radius[i] < INFINITY &&
+      inverse_mass >= 0 && inverse_mass < INFINITY && (inverse_mass > 0) == moves;
   if (!fit) refuse(i);
 }
 
 void Step::refuse(int i) const
 {
   const Grains &g = state_.grains;
-  if (!(g.radius[i] > 0)) fail("grain ", g.tag[i], " has radius ", g.radius[i], ": nscd needs spheres of radius > 0");
+  if (!(g.radius[i] > 0 && std::isfinite(g.radius[i])))
+    fail("grain ", g.tag[i], " has radius ", g.radius[i], ": nscd needs spheres of finite radius > 0");
   if ((g.mask[i] & g.group) && !(g.mass[i] > 0 && std::isfinite(g.mass[i])))
     fail("grain ", g.tag[i], " has mass ", g.mass[i], ": every grain of the group needs a finite mass > 0");
   fail("grain ", g.tag[i], " has a position, velocity or force that is not a finite number");
@@ -220,7 +222,8 @@ void Step::solve_part(std::span<Contact> contacts, std::span<const ContactInfo> 
   report_.converged = report_.converged && solved.converged;
 }
 
-// The contact set grows while the solution drives watched pairs together; that ends, for lack of pairs.
+// The contact set grows while the solution drives watched pairs together; that ends, for lack of pairs. Where impacts
+// come first, all of it starts again with the larger set; otherwise the solution is carried on.
 void Step::solve()
 {
   report_.iterations = 0;
@@ -228,11 +231,13 @@ void Step::solve()
   report_.converged = true;
   state_.impact_impulse.clear();
   std::size_t first = 0;
-  const SolvePart part = [this](auto contacts, auto infos, double e) {
-    solve_part(contacts, infos, e, free_norm(contacts));
-  };
+  const bool impacts_first = law_->resolves_impacts(settings_);
+  if (impacts_first) free_bodies_ = state_.bodies;
   do {
-    law_->impacts(state_, part);
+    if (impacts_first) {
+      resolve_impacts_first(first > 0);
+      first = 0;
+    }
     start_contacts(first);
     solve_part(state_.contacts, state_.infos, law_->restitution_in_bias(settings_), free_norm_);
     law_->displace(state_);
@@ -240,6 +245,15 @@ void Step::solve()
   } while (promote_near(state_) > 0);
   report_.contacts = int(state_.contacts.size());
   judge();
+}
+
+void Step::resolve_impacts_first(bool again)
+{
+  if (again) state_.bodies = free_bodies_;
+  for (Contact &c : state_.contacts) c.impulse = 0;
+  law_->impacts(state_, [this](std::span<Contact> contacts, std::span<const ContactInfo> infos, double restitution) {
+    solve_part(contacts, infos, restitution, free_norm(contacts));
+  });
 }
 
 void Step::judge()

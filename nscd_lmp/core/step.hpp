@@ -69,6 +69,7 @@ class Step {
   double longest_move(double speed) const { return state_.dt * speed * (look_ahead_ + prediction_); }
   void start_contacts(std::size_t first);
   void solve();
+  void resolve_impacts_first(bool again);
   void judge();
   void solve_part(std::span<Contact> contacts, std::span<const ContactInfo> infos, double restitution, double norm);
   void ask_custom(std::span<Contact> contacts, std::span<const ContactInfo> infos);
@@ -90,6 +91,7 @@ class Step {
   StepReport report_;
   const double prediction_;        // contacts are sought at q_k + prediction dt v_k
   const double look_ahead_;        // and this times dt |v| around (0 or 1)
+  AlignedVector<Body> free_bodies_;  // as gathered, where impacts may have to be resolved again
   double free_norm_ = 0;           // of the step's contacts, m/s
   double largest_kick2_ = 0;       // (m/s)^2, of the smooth forces
   double largest_speed2_ = 0;      // (m/s)^2, before or after them

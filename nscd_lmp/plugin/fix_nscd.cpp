@@ -1,6 +1,7 @@
 #include "fix_nscd.hpp"
 
 #include "../core/error.hpp"
+#include "progress.hpp"
 
 #include <atom.h>
 #include <comm.h>
@@ -16,6 +17,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+
+nscd::Progress nscd_progress;
 
 using namespace LAMMPS_NS;
 using namespace FixConst;
@@ -117,6 +120,7 @@ void FixNscd::setup(int /*vflag*/)
   find_list();
   step_->begin_run(neighbor->ago == 0);
   steps_ = 0;
+  nscd_progress.begin_run(update->beginstep, update->endstep, update->ntimestep);
   if (comm->me == 0)
     utils::logmesg(lmp, "fix nscd {}: {}\n", id, nscd::describe(step_->settings()));
 }
@@ -179,6 +183,8 @@ void FixNscd::final_integrate()
                atom->natoms - atom->nlocal, atom->natoms);
   or_stop(error, id, [&] { step_->advance(grains(), pairs(), update->dt); });
   totals_.add(step_->report());
+  const double time = update->atime + double(update->ntimestep - update->atimestep) * update->dt;
+  nscd_progress.add(step_->report(), update->ntimestep, time);
   ++steps_;
   next_reneighbor = step_->wants_rebuild() ? update->ntimestep + 1 : -1;
   if (local_rows_wanted()) fill_local();

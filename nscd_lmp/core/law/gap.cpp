@@ -36,10 +36,8 @@ constexpr double tolerances = 10;     // single contacts miss the mean criterion
 class Gap final : public Law {
  public:
   bool looks_ahead() const override { return true; }
-  void impacts(State &s, const SolvePart &solve) override
-  {
-    if (s.settings.restitution > 0) impacts_.resolve(s, solve);
-  }
+  bool resolves_impacts(const Settings &settings) const override { return settings.restitution > 0; }
+  void impacts(State &s, const SolvePart &solve) override { resolve_impacts(s, solve); }
   void set_bias(State &s, std::size_t first) override;
   void displace(State &s) override;
 
@@ -48,7 +46,6 @@ class Gap final : public Law {
   bool open_contact(const State &s, std::uint32_t k);
   void open_contacts(const State &s);
 
-  Impacts impacts_;
   AlignedVector<Vec4> mean_;      // per body: midpoint velocity, or v_{k+1} where that is needed
   std::vector<char> final_;      // per body: moves with v_{k+1}
   std::vector<std::uint32_t> suspects_;   // contacts that may be driven into overlap

@@ -1,7 +1,7 @@
 #include "impacts.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace nscd {
 
@@ -11,10 +11,8 @@ constexpr double resting_kicks = 2;    // slower than so many smooth velocity ch
 constexpr double tolerances = 10;      // slower than so many times the solver's tolerance: resting
 constexpr int max_rounds = 50;
 
-}    // namespace
-
 // Adds sign times half the smooth velocity change of the step.
-void Impacts::smooth_half(State &s, double sign) const
+void smooth_half(State &s, double sign)
 {
   for (int i = 0; i < s.grains.owned; ++i) {
     const double *f = s.grains.f + 3 * std::size_t(i);
@@ -23,37 +21,40 @@ void Impacts::smooth_half(State &s, double sign) const
   }
 }
 
-void Impacts::select(const State &s)
+// Brings the contacts of S_m to the front and gives them their bias; returns how many. In place: copies of them would
+// double the memory of a contact.
+std::size_t select_closing(State &s)
 {
-  closing_.clear();
-  contacts_.clear();
-  infos_.clear();
   const double slow = resting_kicks * s.smooth_kick + tolerances * s.settings.tol;
+  std::size_t closing = 0;
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
     const double u = normal_velocity(s.contacts[k], s.bodies.data());
     if (u >= -slow || std::max(s.infos[k].gap, 0.0) + s.dt * u >= 0) continue;
-    closing_.push_back(std::uint32_t(k));
-    contacts_.push_back(s.contacts[k]);
-    contacts_.back().impulse = 0;
-    contacts_.back().bias = s.settings.restitution * u;
-    infos_.push_back(s.infos[k]);
+    std::swap(s.contacts[k], s.contacts[closing]);
+    std::swap(s.infos[k], s.infos[closing]);
+    if (!s.impact_impulse.empty()) std::swap(s.impact_impulse[k], s.impact_impulse[closing]);
+    s.contacts[closing++].bias = s.settings.restitution * u;
   }
+  return closing;
 }
 
-void Impacts::keep_impulses(State &s)
+void keep_impulses(State &s, std::size_t closing)
 {
   s.impact_impulse.resize(s.contacts.size(), 0.0);
-  for (std::size_t k = 0; k < closing_.size(); ++k) s.impact_impulse[closing_[k]] += contacts_[k].impulse;
+  for (std::size_t k = 0; k < closing; ++k) s.impact_impulse[k] += std::exchange(s.contacts[k].impulse, 0.0);
 }
 
-void Impacts::resolve(State &s, const SolvePart &solve)
+}    // namespace
+
+void resolve_impacts(State &s, const SolvePart &solve)
 {
+  s.impact_impulse.clear();
   smooth_half(s, -1);
-  select(s);
-  for (int round = 0; round < max_rounds && !closing_.empty(); ++round) {
-    solve(contacts_, infos_, s.settings.restitution);
-    keep_impulses(s);
-    select(s);
+  std::size_t closing = select_closing(s);
+  for (int round = 0; round < max_rounds && closing > 0; ++round) {
+    solve(std::span(s.contacts).first(closing), std::span(s.infos).first(closing), s.settings.restitution);
+    keep_impulses(s, closing);
+    closing = select_closing(s);
   }
   smooth_half(s, +1);
 }

@@ -24,19 +24,8 @@ namespace nscd {
 // Solves for the impulses of these contacts, applies them to the bodies. Restitution scales the criterion.
 using SolvePart = std::function<void(std::span<Contact>, std::span<const ContactInfo>, double restitution)>;
 
-class Impacts {
- public:
-  // Bodies: in, free velocities; out, the same plus what the impacts gave them. Adds to state.impact_impulse.
-  void resolve(State &state, const SolvePart &solve);
-
- private:
-  void smooth_half(State &state, double sign) const;
-  void select(const State &state);
-  void keep_impulses(State &state);
-
-  std::vector<std::uint32_t> closing_;   // S_m
-  std::vector<Contact> contacts_;        // the contacts of S_m
-  std::vector<ContactInfo> infos_;
-};
+// Bodies: in, free velocities; out, the same plus what the impacts gave them. Contacts: in and out, no impulses; the
+// closing ones are brought to the front. state.impact_impulse: out, what the impacts took, or empty if there were none.
+void resolve_impacts(State &state, const SolvePart &solve);
 
 }    // namespace nscd
