@@ -4,11 +4,11 @@
 
 namespace nscd {
 
-// Power of two, at most half full, so that a look-up of an absent key ends soon.
+// Power of two, at most two thirds full, so that a look-up of an absent key ends soon.
 void ImpulseMemory::grow(std::size_t contacts)
 {
   int bits = 6;
-  while ((std::size_t(1) << bits) < 2 * contacts) ++bits;
+  while (2 * (std::size_t(1) << bits) < 3 * contacts) ++bits;
   const std::size_t size = std::size_t(1) << bits;
   if (size <= table_.size()) return;
   table_.resize(size);

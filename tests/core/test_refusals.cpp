@@ -1,0 +1,166 @@
+// What a step refuses, and that nothing is lost then: the arrays stay as they are, and a repaired scene goes on.
+#include "check.hpp"
+#include "scene.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+
+using nscd::Step;
+
+static bool same_bits(const std::vector<double> &a, const std::vector<double> &b)
+{
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+// Two grains that fall onto the floor, and one in the air.
+static Scene three_grains()
+{
+  Scene scene;
+  scene.add({0, 0, 1}, 1, 1, {0, 0, -1});
+  scene.add({3, 0, 1}, 1, 2, {0, 0, -1});
+  scene.add({0, 0, 9}, 1, 3, {1, 0, 0});
+  scene.accelerate({0, 0, -10});
+  return scene;
+}
+
+static void refuses(const std::string &keywords, const std::function<void(Scene &)> &spoil, const std::string &part)
+{
+  for (const char *law : {"law moreau ", "law gap "}) {
+    Scene scene = three_grains();
+    spoil(scene);
+    const Scene before = scene;
+    Step step(settings(law + keywords + " wall plane 0 0 0 0 0 1"));
+    CHECK_ERROR(scene.advance(step, 0.01), part);
+    CHECK(same_bits(scene.x, before.x) && same_bits(scene.v, before.v) && same_bits(scene.f, before.f));
+  }
+}
+
+TEST(positions_velocities_and_forces_that_are_not_finite_are_refused)
+{
+  for (const double bad : {double(NAN), double(INFINITY), -double(INFINITY)})
+    for (const int at : {5, 6}) {  // of a grain in contact and of one in free flight
+      refuses("", [=](Scene &s) { s.x[at] = bad; }, "not a finite number");
+      refuses("", [=](Scene &s) { s.v[at] = bad; }, "not a finite number");
+      refuses("", [=](Scene &s) { s.f[at] = bad; }, "not a finite number");
+    }
+}
+
+TEST(the_grain_that_is_not_finite_is_named)
+{
+  refuses("", [](Scene &s) { s.v[7] = NAN; }, "grain 3 ");
+}
+
+TEST(radii_that_are_not_positive_are_refused)
+{
+  for (const double bad : {0.0, -1.0, double(NAN)}) refuses("", [=](Scene &s) { s.radius[2] = bad; }, "grain 3 has radius ");
+  refuses("", [](Scene &s) { s.radius[2] = INFINITY; }, "grain 3 has radius inf");
+}
+
+TEST(masses_that_are_not_positive_are_refused)
+{
+  for (const double bad : {0.0, -1.0, double(NAN), double(INFINITY)})
+    for (const double force : {0.0, 5.0})
+      refuses("", [=](Scene &s) { s.mass[2] = bad; s.f[8] = force; }, "grain 3 has mass ");
+}
+
+TEST(masses_of_obstacles_do_not_matter)
+{
+  Scene scene = three_grains();
+  scene.mass[1] = 0;
+  scene.mask[1] = 2;
+  Step step(settings(""));
+  scene.advance(step, 0.01);
+  CHECK(scene.x[3] == 3 && std::isfinite(scene.v[2]));
+}
+
+TEST(overlaps_beyond_a_radius_are_refused)
+{
+  refuses("", [](Scene &s) { s.x[0] = 2.2; }, "grains 1 and 2 overlap by 1.2");
+  refuses("", [](Scene &s) { s.x[2] = -0.5; }, "inside wall 1");
+}
+
+TEST(contacts_that_could_be_missed_are_refused)
+{
+  refuses("", [](Scene &s) { s.reach = 0.001; }, "contacts could be missed");
+  refuses("", [](Scene &s) { s.reach = -1; }, "pairs only up to -1 apart: raise the cutoff");
+}
+
+TEST(moves_since_the_list_was_built_count_towards_missed_contacts)
+{
+  Scene scene;
+  scene.add({0, 0, 5}, 1, 1, {0, 0, 1});
+  scene.reach = 0.25;
+  Step step(settings("law gap"));
+  scene.advance(step, 0.05);  // ahead 0.05
+  CHECK(!step.wants_rebuild());
+  scene.just_built = false;
+  scene.advance(step, 0.05);  // moved 0.05, ahead 0.05
+  CHECK(step.wants_rebuild());
+  CHECK_ERROR(scene.advance(step, 0.05), "moved 0.1 each, and dt v = 0.05");
+  scene.just_built = true;
+  CHECK(scene.advance(step, 0.05).contacts == 0);
+}
+
+TEST(a_step_that_is_not_solved_is_an_error_if_asked)
+{
+  const auto crowd = [](Scene &s) { s.x[3] = 1.99; s.v[3] = -1; };
+  refuses("solver sal maxiter 1 unconverged error", crowd, "step not solved: criterion (42) is ");
+  Scene scene = three_grains();
+  crowd(scene);
+  Step step(settings("solver sal maxiter 1 unconverged ignore wall plane 0 0 0 0 0 1"));
+  CHECK(!scene.advance(step, 0.01).converged && step.report().unconverged == 1);
+}
+
+TEST(an_exception_of_a_custom_solver_reaches_the_caller)
+{
+  for (const char *law : {"law moreau", "law gap"}) {
+    Scene scene = three_grains();
+    const Scene before = scene;
+    Step step(settings(std::string(law) + " wall plane 0 0 0 0 0 1"),
+              [](const auto &, const auto &, auto) { nscd::fail("mine"); });
+    CHECK_ERROR(scene.advance(step, 0.01), "mine");
+    CHECK(same_bits(scene.x, before.x) && same_bits(scene.v, before.v) && same_bits(scene.f, before.f));
+  }
+}
+
+TEST(impulses_of_a_custom_solver_that_are_not_numbers_are_refused)
+{
+  Scene scene = three_grains();
+  const Scene before = scene;
+  Step step(settings("law moreau wall plane 0 0 0 0 0 1"), [](const auto &, const auto &, auto p) { p[0] = NAN; });
+  CHECK_ERROR(scene.advance(step, 0.01), "not a number");
+  CHECK(same_bits(scene.x, before.x) && same_bits(scene.v, before.v));
+}
+
+TEST(timesteps_that_are_not_positive_are_refused)
+{
+  for (const char *law : {"law moreau", "law gap"})
+    for (const double dt : {0.0, -0.01, double(NAN), double(INFINITY)}) {
+      Scene scene = three_grains();
+      const Scene before = scene;
+      Step step(settings(std::string(law) + " wall plane 0 0 0 0 0 1"));
+      CHECK_ERROR(scene.advance(step, dt), "timestep");
+      CHECK(same_bits(scene.x, before.x) && same_bits(scene.v, before.v) && same_bits(scene.f, before.f));
+    }
+}
+
+TEST(a_repaired_scene_goes_on_as_if_nothing_had_been)
+{
+  for (const char *law : {"law moreau", "law gap"}) {
+    Scene scene = three_grains(), reference = three_grains();
+    Step step(settings(std::string(law) + " wall plane 0 0 0 0 0 1")), clean(settings(std::string(law) + " wall plane 0 0 0 0 0 1"));
+    for (int k = 0; k < 3; ++k) {
+      scene.advance(step, 0.01);
+      reference.advance(clean, 0.01);
+      scene.accelerate({0, 0, -10});
+      reference.accelerate({0, 0, -10});
+      const double kept = scene.x[2];
+      scene.x[2] = -5;
+      CHECK_ERROR(scene.advance(step, 0.01), "inside wall");
+      scene.x[2] = kept;
+    }
+    CHECK(same_bits(scene.x, reference.x) && same_bits(scene.v, reference.v) && same_bits(scene.f, reference.f));
+    CHECK(step.report().dissipated == clean.report().dissipated);
+  }
+}

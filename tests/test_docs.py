@@ -1,0 +1,119 @@
+"""Every code block of README.md and docs/*.md runs: a page's blocks in their order, in one empty folder.
+
+``python`` blocks run as scripts, ``bash`` blocks under ``bash -eu``, ``lammps`` blocks as input of ``lmp``;
+blocks in other languages, or in none, are text. An HTML comment on the line before a block can say otherwise:
+``<!-- not run: reason -->``, or ``<!-- command: name -->``, which marks README's two command lines.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import sysconfig
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+BESIDE = ("inputs", "analysis", "benchmarks")  # folders that blocks may name, linked into theirs
+COMMANDS = {
+    "python": (sys.executable, "block.python"),
+    "bash": ("bash", "-euo", "pipefail", "block.bash"),
+    "lammps": ("lmp", "-in", "block.lammps"),
+}
+BLOCK = re.compile(
+    r"^(?:<!-- (?P<mark>[\w ]+): (?P<reason>.+?) -->\n+)?```(?P<language>\w*)[^\n]*\n(?P<text>.*?)^```$",
+    re.M | re.S,
+)
+
+
+@dataclass
+class Block:
+    line: int
+    mark: str | None
+    reason: str | None
+    language: str
+    text: str
+
+
+def blocks(page: Path) -> list[Block]:
+    """Return the fenced code blocks of a page."""
+    text = page.read_text()
+    return [
+        Block(text.count("\n", 0, found.start()) + 1, **found.groupdict()) for found in BLOCK.finditer(text)
+    ]
+
+
+def run(block: Block, folder: Path, where: str) -> None:
+    """Run a block in the folder; fail with what it printed."""
+    (folder / f"block.{block.language}").write_text(block.text)
+    path = os.pathsep.join([sysconfig.get_path("scripts"), os.environ["PATH"]])
+    environment = os.environ | {"PATH": path, "MPLBACKEND": "agg"}
+    done = subprocess.run(
+        COMMANDS[block.language], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300,
+    )  # fmt: skip
+    if done.returncode != 0:
+        pytest.fail(
+            f"{where}: exit status {done.returncode}\n{block.text}\n{done.stdout[-3000:]}", pytrace=False
+        )
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_blocks_run(page: Path, tmp_path: Path) -> None:
+    for name in BESIDE:
+        if (ROOT / name).is_dir():
+            (tmp_path / name).symlink_to(ROOT / name)
+    for block in blocks(page):
+        if block.mark is None and block.language in COMMANDS:
+            run(block, tmp_path, f"{page.name}, block at line {block.line}")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_marks_of_blocks_are_known(page: Path) -> None:
+    assert {block.mark for block in blocks(page)} <= {None, "not run", "command"}
+    # A fence that is not closed, or indented, would hide its block from this file.
+    assert page.read_text().count("```") == 2 * len(blocks(page))
+
+
+def command(name: str) -> str:
+    """Return one of README's command lines."""
+    found = [block for block in blocks(PAGES[0]) if (block.mark, block.reason) == ("command", name)]
+    assert len(found) == 1 and found[0].language == "bash" and found[0].text.count("\n") == 1
+    return found[0].text.strip()
+
+
+def test_readme_opens_with_the_two_commands() -> None:
+    """They differ in what they install and in what they run at the end; .ci/run proves the second."""
+    first, second = blocks(PAGES[0])[:2]
+    assert (first.text.strip(), second.text.strip()) == (command("demo"), command("test"))
+    *install, _ = command("demo").split(" && ")
+    *install_tests, pytest_line = command("test").split(" && ")
+    assert [words.replace('".[test]"', ".") for words in install_tests] == install
+    assert pytest_line == ".venv/bin/pytest"
+
+
+def test_readme_demo_runs(tmp_path: Path) -> None:
+    """What the first command line runs once everything is set up."""
+    last = command("demo").split(" && ")[-1].replace(".venv/bin/", "")
+    run(Block(0, None, None, "bash", last), tmp_path, "README.md, command demo")
+    assert list(tmp_path.rglob("*.png")), "no picture"
+
+
+def test_ci_runs_the_second_command(tmp_path: Path) -> None:
+    """.ci/run takes its line from README.md and hands its exit status on."""
+    (tmp_path / ".ci").mkdir()
+    script = tmp_path / ".ci" / "run"
+    script.write_bytes((ROOT / ".ci" / "run").read_bytes())
+    page = "<!-- command: demo -->\n```bash\nexit 9\n```\n\n<!-- command: test -->\n```bash\n{}\n```\n"
+    for status in (0, 3):
+        (tmp_path / "README.md").write_text(page.format(f"echo last && exit {status}"))
+        done = subprocess.run(["bash", str(script)], cwd="/", capture_output=True, text=True)
+        assert done.returncode == status
+        assert done.stdout.splitlines()[-1] == "last"
+    (tmp_path / "README.md").write_text("no commands\n")
+    assert subprocess.run(["bash", str(script)], capture_output=True).returncode != 0

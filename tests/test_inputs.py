@@ -1,0 +1,65 @@
+"""Every input script runs, shortened, under a plain `lmp -in`."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sysconfig
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+SCRIPTS = sorted((ROOT / "inputs").glob("in.*"))
+STEPS = 200
+SHORT = {"n": "50", "steps": str(STEPS), "every": "50", "contacts": "dump.contacts"}
+
+
+def variants(script: Path) -> list[dict[str, str]]:
+    """Return the variables to run a script with: short, with its own contact law and with the other one."""
+    defaults = dict(re.findall(r"^variable\s+(\w+)\s+index\s+(\S+)", script.read_text(), re.M))
+    short = {name: value for name, value in SHORT.items() if name in defaults}
+    if "law" not in defaults:
+        return [short]
+    return [short, short | {"law": "moreau" if defaults["law"] == "gap" else "gap"}]
+
+
+def run(script: Path, folder: Path, variables: dict[str, str]) -> str:
+    """Run lmp in the folder, beside a link to inputs/, and return what it printed."""
+    (folder / "inputs").symlink_to(ROOT / "inputs")
+    lmp = shutil.which("lmp", path=os.pathsep.join([sysconfig.get_path("scripts"), os.environ["PATH"]]))
+    assert lmp, "lmp is missing: pip install . brings it"
+    words = [word for pair in variables.items() for word in ("-var", *pair)]
+    done = subprocess.run(
+        [lmp, "-in", f"inputs/{script.name}", *words], cwd=folder, capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0, (done.stdout + done.stderr)[-3000:]
+    return done.stdout
+
+
+def columns(output: str) -> dict[str, str]:
+    """Return the last row of the last thermo table, by column name."""
+    table = output.split("Loop time of")[-2]
+    header = [line for line in table.splitlines() if line.split()[:1] == ["Step"]][-1].split()
+    row = [line for line in table.splitlines() if re.match(r"\s*\d+ ", line)][-1].split()
+    return dict(zip(header, row, strict=True))
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)
+def test_input_runs(script: Path, tmp_path: Path) -> None:
+    for k, variables in enumerate(variants(script)):
+        folder = tmp_path / str(k)
+        folder.mkdir()
+        output = run(script, folder, variables)
+        assert not re.search(r"ERROR|WARNING|\bnan\b", output), output[-3000:]
+        last = columns(output)
+        assert int(last["Step"]) >= STEPS
+        assert last.get("unconverged", "0") == "0"
+        dumps = list(folder.glob("dump.*"))
+        assert dumps and all(path.stat().st_size > 0 for path in dumps)
+
+
+def test_inputs_are_there() -> None:
+    assert {"in.slide", "in.sedimentation", "in.incline"} <= {path.name for path in SCRIPTS}

@@ -1,0 +1,39 @@
+"""Lint, format and types: what `ruff check`, `ruff format --check` and `mypy` say."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+
+
+def python_module(*words: str, cwd: Path = ROOT) -> None:
+    """Run ``python -m`` with these words; fail with what it printed."""
+    done = subprocess.run(
+        [sys.executable, "-m", *words], cwd=cwd, capture_output=True, text=True, timeout=300
+    )
+    if done.returncode != 0:
+        pytest.fail(done.stdout + done.stderr, pytrace=False)
+
+
+def test_ruff_finds_nothing() -> None:
+    python_module("ruff", "check", "--no-cache", "--output-format", "concise")
+
+
+def test_ruff_would_change_nothing() -> None:
+    python_module("ruff", "format", "--check", "--no-cache")
+
+
+# The installed package, since only it has the stubs of the compiled module; not from the repository's root,
+# where the package's source folder would come first.
+def test_types_of_the_package_hold(tmp_path: Path) -> None:
+    words = ["--config-file", str(ROOT / "pyproject.toml"), "--cache-dir", str(tmp_path), "-p", "nscd_lmp"]
+    python_module("mypy", *words, cwd=tmp_path)
+
+
+def test_types_of_the_repository_hold(tmp_path: Path) -> None:
+    python_module("mypy", "--cache-dir", str(tmp_path))
