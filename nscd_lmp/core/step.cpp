@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
 namespace nscd {
 
@@ -35,7 +34,7 @@ Step::Step(const Settings &settings, CustomSolver custom) :
 void Step::begin_run(bool list_just_built)
 {
   report_ = {};
-  fresh_list_ = fresh_list_ || list_just_built;
+  if (list_just_built) list_.expect_new_list();
 }
 
 const StepReport &Step::advance(const Grains &grains, const PairList &pairs, double dt)
@@ -44,24 +43,16 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
   if (!(dt > 0 && std::isfinite(dt))) fail("the timestep is ", dt, ": it must be > 0");
   state_.dt = dt;
   state_.grains = grains;
-  if (pairs.just_built || fresh_list_) take_list();
+  list_.inspect(state_, pairs);
   gather();
-  check_reach(pairs);
+  const double speed = std::sqrt(largest_speed2_);
+  list_.require_reach(state_, pairs, longest_move(speed), speed);
   detect(state_, pairs);
   solve();
   finish();
   write_back(pairs);
   report_.seconds_contacts = seconds(start, Clock::now()) - report_.seconds_solver;
   return report_;
-}
-
-// What holds until the neighbor list is rebuilt.
-void Step::take_list()
-{
-  const double *x = state_.grains.x;
-  listed_x_.assign(x, x + 3 * std::size_t(state_.grains.owned));
-  find_owners();
-  fresh_list_ = false;
 }
 
 // Free velocity (14) and predicted centre (18) of one grain.
@@ -111,23 +102,6 @@ NSCD_HOT void Step::gather()
   place_images();
 }
 
-// On one rank the grain of every image is at home. Which it is stays the same until the neighbor list is rebuilt.
-void Step::find_owners()
-{
-  const Grains &g = state_.grains;
-  state_.owner.resize(std::size_t(g.owned) + g.ghosts);
-  std::iota(state_.owner.begin(), state_.owner.begin() + g.owned, 0);
-  if (g.ghosts == 0) return;
-  by_tag_.resize(g.owned);
-  for (int i = 0; i < g.owned; ++i) by_tag_[i] = {g.tag[i], i};
-  std::sort(by_tag_.begin(), by_tag_.end());
-  for (int j = g.owned; j < g.owned + g.ghosts; ++j) {
-    const auto at = std::lower_bound(by_tag_.begin(), by_tag_.end(), std::pair<std::int32_t, int>{g.tag[j], 0});
-    if (at == by_tag_.end() || at->first != g.tag[j]) fail("image of grain ", g.tag[j], " has no grain on this rank");
-    state_.owner[j] = at->second;
-  }
-}
-
 // Images take their grain's velocity, so ghosts need none of their own.
 void Step::place_images()
 {
@@ -138,28 +112,6 @@ void Step::place_images()
     const Vec4 shift{xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2], 0};
     state_.spheres[j] = {state_.spheres[i].centre + shift, g.radius[i], state_.spheres[i].reach};
   }
-}
-
-double Step::farthest_since_listed() const
-{
-  const double *x = state_.grains.x;
-  double farthest2 = 0;
-  for (std::size_t i = 0; i + 2 < listed_x_.size(); i += 3) {
-    const double a = x[i] - listed_x_[i], b = x[i + 1] - listed_x_[i + 1], c = x[i + 2] - listed_x_[i + 2];
-    farthest2 = std::max(farthest2, a * a + b * b + c * c);
-  }
-  return std::sqrt(farthest2);
-}
-
-// The list holds all pairs up to `reach` apart when it was built; since then grains moved, and they look ahead.
-void Step::check_reach(const PairList &pairs)
-{
-  const double moved = farthest_since_listed(), speed = std::sqrt(largest_speed2_), ahead = longest_move(speed);
-  if (2 * (moved + ahead) > pairs.reach * (1 + 1e-12))
-    fail("contacts could be missed: two grains can be ", 2 * (moved + ahead), " nearer than when the neighbor list was "
-         "built (moved ", moved, " each, and dt v = ", ahead, " with v = ", speed, "), but it holds pairs only up to ",
-         pairs.reach, " apart: raise the cutoff of the pair style by 2 dt v of the fastest grain, or use a larger "
-         "neighbor skin or a smaller timestep");
 }
 
 // ||v + bias||_2 over the contacts, with the bodies as they are, m/s.
@@ -321,7 +273,7 @@ void Step::write_back(const PairList &pairs)
     fastest2 = std::max(fastest2, b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
   }
   const double next = longest_move(std::sqrt(fastest2) + state_.smooth_kick);
-  wants_rebuild_ = 2 * (farthest_since_listed() + next) > pairs.reach;
+  wants_rebuild_ = list_.too_old(state_, pairs, next);
 }
 
 }    // namespace nscd

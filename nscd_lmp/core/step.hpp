@@ -3,6 +3,7 @@
 
 #include "impulse_memory.hpp"
 #include "law.hpp"
+#include "list_guard.hpp"
 #include "solver.hpp"
 #include "state.hpp"
 
@@ -58,13 +59,10 @@ class Step {
   bool wants_rebuild() const { return wants_rebuild_; }
 
  private:
-  void take_list();
   void gather();
   void load_body(int i);
   void refuse(int i) const;
-  void find_owners();
   void place_images();
-  void check_reach(const PairList &pairs);
   // How far around q_k contacts are sought, m, for a grain of this speed.
   double longest_move(double speed) const { return state_.dt * speed * (look_ahead_ + prediction_); }
   void start_contacts(std::size_t first);
@@ -77,17 +75,16 @@ class Step {
   void finish();
   void tally_contacts();
   void write_back(const PairList &pairs);
-  double farthest_since_listed() const;
 
   const Settings settings_;
   const SolverEntry *solver_;
   CustomSolver custom_;
   const std::unique_ptr<Law> law_;
   State state_;
+  ListGuard list_;
   ImpulseMemory memory_;
   SolverOptions options_;
   std::vector<double> workspace_;
-  std::vector<std::pair<std::int32_t, int>> by_tag_;
   StepReport report_;
   const double prediction_;        // contacts are sought at q_k + prediction dt v_k
   const double look_ahead_;        // and this times dt |v| around (0 or 1)
@@ -95,8 +92,6 @@ class Step {
   double free_norm_ = 0;           // of the step's contacts, m/s
   double largest_kick2_ = 0;       // (m/s)^2, of the smooth forces
   double largest_speed2_ = 0;      // (m/s)^2, before or after them
-  std::vector<double> listed_x_;   // (owned, 3) positions at which the pair list was built
-  bool fresh_list_ = true;
   bool wants_rebuild_ = false;
 };
 
