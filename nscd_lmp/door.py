@@ -1,7 +1,7 @@
 """The Python door: nonsmooth contact dynamics on a live LAMMPS object.
 
-Needs LAMMPS' C interface alone, so it serves any build that has ``fix external`` (all do). A step is compiled code
-from end to end; Python is entered only by a Python solver.
+Needs LAMMPS' C interface alone, so it serves any build that has ``fix external`` (all do). A step is compiled
+code from end to end; Python is entered only by a Python solver.
 """
 
 import ctypes
@@ -16,11 +16,11 @@ from nscd_lmp import _core
 from nscd_lmp.attached import Attached
 from nscd_lmp.contact_system import ContactSystem
 from nscd_lmp.inspection import Inspection
+from nscd_lmp.step_fix import FIX_ID, address, definition
 from nscd_lmp.walls import Plane
 
 PythonSolver = Callable[[ContactSystem], NDArray[np.float64]]
 
-FIX_ID = "nscd_external"
 ADDRESSES = (
     "lammps_extract_atom",
     "lammps_extract_global",
@@ -51,11 +51,12 @@ def attach(
     theta: float = 0.5,
     recovery: float = 0.2,
     unconverged: Literal["ignore", "warn", "error"] = "warn",
+    door: Literal["external", "invoke"] = "external",
 ) -> Attached:
     """Make the grains of a group rigid: the following runs of `lmp` integrate them by contact dynamics.
 
-    Call it when atoms, pair style (``pair_style zero CUTOFF`` will do) and neighbor settings are there. Fixes that
-    exert forces may come before or after.
+    Call it when atoms, pair style (``pair_style zero CUTOFF`` will do) and neighbor settings are there. Fixes
+    that exert forces may come before or after.
 
     Parameters
     ----------
@@ -64,8 +65,8 @@ def attach(
     group : str
         Atoms to move; the others are obstacles of infinite mass.
     solver : str or callable
-        A name of :data:`nscd_lmp.SOLVERS`, or a function that takes a :class:`ContactSystem` and returns one impulse
-        (N s) per contact, a float64 array of shape (n,).
+        A name of :data:`nscd_lmp.SOLVERS`, or a function that takes a :class:`ContactSystem` and returns one
+        impulse (N s) per contact, a float64 array of shape (n,).
     law : str
         A name of :data:`nscd_lmp.LAWS`.
     restitution : float
@@ -84,7 +85,11 @@ def attach(
     recovery : float
         Of ``law gap``: share of an overlap given back per step.
     unconverged : str
-        What to do about steps that did not reach `tol`: ``"ignore"``, ``"warn"`` at the end of a run, or ``"error"``.
+        What to do about steps that did not reach `tol`: ``"ignore"``, ``"warn"`` at the end of a run, or
+        ``"error"``.
+    door : str
+        What calls the step: ``"external"`` (LAMMPS' ``fix external``, in every build) or ``"invoke"`` (its
+        ``fix python/invoke``, in builds with package PYTHON). The trajectories are equal to the last bit.
 
     Returns
     -------
@@ -94,9 +99,10 @@ def attach(
     Raises
     ------
     NscdError
-        For a value out of range, an unknown name, no pair style, a second integrator, more than one rank.
-        From the commands that run steps: whatever stopped the run, exceptions of a Python solver included; the
-        positions and velocities are then those at the end of the last good step.
+        For a value out of range, an unknown name, no pair style, a second integrator, more than one rank, a
+        door that the build lacks.
+        From the commands that run steps: whatever stopped the run, exceptions of a Python solver included;
+        the positions and velocities are then those at the end of the last good step.
     """
     keywords = _keywords(
         law=law, restitution=restitution, tol=tol, maxiter=maxiter, warmstart=warmstart, rho=rho, gamma=gamma,
@@ -113,7 +119,7 @@ def attach(
         keywords += ["solver", solver]
     for wall in walls:
         keywords += wall.keywords()
-    return _Door(lmp, group, keywords, custom, unconverged).attached
+    return _Door(lmp, group, keywords, custom, unconverged, door).attached
 
 
 def _keywords(**values: Any) -> list[str]:
@@ -129,9 +135,17 @@ def _keywords(**values: Any) -> list[str]:
 
 
 class _Door:
-    """The fix external on one LAMMPS instance, and the watch over the commands that run it."""
+    """The step's fix on one LAMMPS instance, and the watch over the commands that run it."""
 
-    def __init__(self, lmp: Any, group: str, keywords: list[str], solver: Any, unconverged: str) -> None:
+    def __init__(
+        self, lmp: Any, group: str, keywords: list[str], solver: Any, unconverged: str, door: str
+    ) -> None:
+        ranks = lmp.extract_setting("world_size")
+        if ranks > 1:
+            raise _core.NscdError(
+                f"nscd runs on one MPI rank, this run has {ranks}: start LAMMPS on one rank"
+            )
+        self.define = definition(lmp, door)
         self.lmp = lmp
         self.group = group
         self.warn = unconverged == "warn"
@@ -140,8 +154,9 @@ class _Door:
         pair_style = self.inspection.pair_style()
         cutoff = self.inspection.neighbor_cutoff()
         addresses = {name: ctypes.cast(getattr(lmp.lib, name), ctypes.c_void_p).value for name in ADDRESSES}
-        addresses["handle"] = _address(lmp.lmp)
-        self.fix = _core.ExternalFix(addresses, pair_style, cutoff, self.inspection.group_bit(group), keywords, solver)
+        addresses["handle"] = address(lmp.lmp)
+        group_bit = self.inspection.group_bit(group)
+        self.fix = _core.ExternalFix(addresses, pair_style, cutoff, group_bit, keywords, solver)
         self.methods = {name: getattr(lmp, name) for name in COMMAND_METHODS}
         self.add_fix()
         for name in COMMAND_METHODS:
@@ -150,13 +165,8 @@ class _Door:
         lmp._nscd = self
 
     def add_fix(self) -> None:
-        """Define the fix external and give it the compiled callback."""
-        self.methods["command"](f"fix {FIX_ID} {self.group} external pf/callback 1 1")
-        register = ctypes.cast(
-            self.lmp.lib.lammps_set_fix_external_callback,
-            ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p, ctypes.c_void_p),
-        )
-        register(_address(self.lmp.lmp), FIX_ID.encode(), self.fix.callback_address, self.fix.self_address)
+        """Define the fix that calls the step."""
+        self.define(self.lmp, self.methods["command"], self.group, self.fix)
 
     def watched(self, name: str) -> Callable[..., Any]:
         """Return the LAMMPS method, made to raise what stopped a run inside it."""
@@ -201,8 +211,3 @@ class _Door:
         if any(fix.id == FIX_ID for fix in self.inspection.fixes()):
             self.lmp.command(f"unfix {FIX_ID}")
         self.lmp.__dict__.pop("_nscd", None)
-
-
-def _address(pointer: Any) -> int:
-    """Return the integer address of LAMMPS' handle, which some versions keep as int, some as c_void_p."""
-    return pointer.value if isinstance(pointer, ctypes.c_void_p) else int(pointer)

@@ -27,6 +27,7 @@ class Inspection:
     def __init__(self, lmp: Any) -> None:
         self._command = lmp.command
         self._setting = lmp.extract_setting
+        self._atoms = lmp.extract_atom
 
     def info(self, *topics: str) -> str:
         """Return what ``info`` prints on the topics."""
@@ -49,8 +50,8 @@ class Inspection:
         found = re.search(r"Atoms +=.*style = (\S+)", self.info("system"))
         if not found or found[1] == "none":
             raise NscdError(
-                "no pair style is defined, so there is no neighbor list: use pair_style zero CUTOFF with a cutoff of"
-                " the largest diameter plus what two grains can move in a step, and pair_coeff * *"
+                "no pair style is defined, so there is no neighbor list: use pair_style zero CUTOFF with a"
+                " cutoff of the largest diameter plus what two grains can move in a step, and pair_coeff * *"
             )
         return found[1]
 
@@ -65,8 +66,8 @@ class Inspection:
     def neighbor_cutoff(self) -> float:
         """Return pair cutoff plus skin, the distance within which pairs are listed.
 
-        LAMMPS knows it after an initialisation, which writing a restart brings about without touching atoms, and
-        prints it only as a lower bound of the communication cutoff; that is set to 0 meanwhile.
+        LAMMPS knows it after an initialisation, which writing a restart brings about without touching atoms,
+        and prints it only as a lower bound of the communication cutoff; that is set to 0 meanwhile.
         """
         self._command(f"write_restart {os.devnull}")
         shown = self._communication_cutoff()
@@ -82,11 +83,16 @@ class Inspection:
             raise NscdError("LAMMPS did not tell its communication cutoff")
         return float(found[1])
 
+    def share_atoms(self, first: str, second: str) -> bool:
+        """Return whether an atom is in both groups."""
+        both = self.group_bit(first) | self.group_bit(second)
+        return any(mask & both == both for mask in self._atoms("mask")[: self._setting("nlocal")])
+
     def refuse_integrators(self, fixes: list[FixInfo], own_id: str, group: str) -> None:
-        """Raise if another fix moves the same group."""
+        """Raise if another fix moves atoms of the group."""
         for fix in fixes:
-            same = "all" in (fix.group, group) or fix.group == group
-            if fix.id != own_id and same and INTEGRATORS.match(fix.style):
+            moves = fix.id != own_id and INTEGRATORS.match(fix.style)
+            if moves and self.share_atoms(fix.group, group):
                 raise NscdError(
                     f"atoms of group {group} are moved by fix {fix.id} (style {fix.style}) too:"
                     " remove that fix or give the two disjoint groups"

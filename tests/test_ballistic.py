@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 
-import nscd_lmp
 import numpy as np
 import pytest
 from scenes import FLOOR, GRAVITY, grains, harden, trajectory
+
+import nscd_lmp
 
 LAWS = list(nscd_lmp.LAWS)
 RADIUS = 0.5  # m
@@ -33,8 +34,9 @@ def test_free_flight_is_exact_to_round_off(start, law, dt):
 @pytest.mark.parametrize("e", [0.0, 1.0])
 @pytest.mark.parametrize("law", LAWS)
 def test_near_misses_do_not_bend_a_flight(start, law, e):
-    # One ball turns 1e-4 m under a ceiling, another passes one at rest with a clearance of 1e-4 m; a step moves them
-    # by 2e-3 m, so law gap looks at both as contacts. (Its linearised gap would touch below (v dt)^2 / 4r = 2e-6 m.)
+    # One ball turns 1e-4 m under a ceiling, another passes one at rest with a clearance of 1e-4 m; a step
+    # moves them by 2e-3 m, so law gap looks at both as contacts. (Its linearised gap would touch below (v
+    # dt)^2 / 4r = 2e-6 m.)
     dt, steps, clearance = 1e-3, 200, 1e-4
     ceiling = nscd_lmp.Plane((0, 0, 1.0 + RADIUS + clearance), (0, 0, -1))
     x0 = np.array([[0, 0, 1.0 - GRAVITY * 0.1**2 / 2], [-0.2, 3, -5], [0, 3, -5 + 2 * RADIUS + clearance]])
@@ -74,7 +76,8 @@ def test_trajectory_through_an_impact_is_first_order(start, law, e):
         harden(lmp, law=law, restitution=e, walls=[FLOOR])
         x, _ = trajectory(lmp, steps)
         errors.append(abs(x[-1, 0, 2] - exact) / step)
-    # the impact comes up to a step early or late, where the speed jumps by (1 + e) v, and errs by e g dt in speed
+    # the impact comes up to a step early or late, where the speed jumps by (1 + e) v, and errs by e g dt in
+    # speed
     assert max(errors) <= (1 + e) * speed + 2 * e * GRAVITY * since
 
 
@@ -94,8 +97,8 @@ def bounces(start, law, e, dt, drop=0.05):
 def test_zeno_bounce_stops_at_the_sum_of_its_flights(start, law, e, dt):
     stop, _, t, v, height = bounces(start, law, e, dt)
     stopped = t[np.abs(v) > 0.5 * GRAVITY * dt].max()
-    # an impact errs by up to g dt in speed, 2 dt / (1 - e) in all later flights, and there are about
-    # log(v / g dt) / log(1 / e) of them, with both signs: 20 steps hold for all, at every dt, so the error is O(dt)
+    # an impact errs by up to g dt in speed, 2 dt / (1 - e) in all later flights, and there are about log(v /
+    # g dt) / log(1 / e) of them, with both signs: 20 steps hold for all, at every dt, so the error is O(dt)
     assert abs(stopped - stop) <= 20 * dt
     assert np.abs(v[t > stopped + 100 * dt]).max(initial=0) <= 1e-12  # and then it is at rest
     # moreau keeps the overlap of the last hops that could not leave it: a few g dt in speed for a step
@@ -108,7 +111,9 @@ def test_rebounds_form_a_geometric_sequence(start, law, e):
     dt = 5e-5
     _, speed, _, v, _ = bounces(start, law, e, dt)
     rebounds = v[1:][(v[1:] > 0) & (v[:-1] < 0)]
-    count = int(math.log(50 * GRAVITY * dt / speed) / math.log(e))  # those well above the speed of a step's gravity
+    count = int(
+        math.log(50 * GRAVITY * dt / speed) / math.log(e)
+    )  # those well above the speed of a step's gravity
     expected = speed * e ** np.arange(1, count + 1)
     # each impact comes within a step of its time, g dt in speed, which the next ones multiply by e: a series
     assert np.abs(rebounds[:count] - expected).max() <= 2 * GRAVITY * dt / (1 - e)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 
-import nscd_lmp
 import numpy as np
 import pytest
 from scenes import FLOOR, GRAVITY, grains, harden, state
+
+import nscd_lmp
 
 SOLVERS, LAWS = list(nscd_lmp.SOLVERS), list(nscd_lmp.LAWS)
 RADIUS, DT = 0.5, 1e-3
@@ -51,22 +52,25 @@ def test_column_stands_still_for_a_second(start, law):
 
 
 def sweeps_a_decade(start, solver, balls, rates=(1e-6, 1e-10)):
-    """Return the iterations that criterion (42) takes to fall by ten, between two tolerances, from P = 0."""
+    """Return the iterations in which criterion (42) falls by ten, between two tolerances, from P = 0."""
     counts = []
     for tol in rates:
-        _, attached, _ = stand(start, balls, solver=solver, law="moreau", tol=tol, maxiter=1000000, warmstart=False)
+        _, attached, _ = stand(
+            start, balls, solver=solver, law="moreau", tol=tol, maxiter=1000000, warmstart=False
+        )
         assert attached.stats["unconverged_steps"][-1] == 0
         counts.append(attached.stats["iterations"][-1])
     return (counts[1] - counts[0]) / math.log10(rates[0] / rates[1])
 
 
 def relaxation_rate(jacobi: float, omega: float) -> float:
-    """Return the error left by a sweep of relaxed Gauss-Seidel on a chain (Young 1954), from Jacobi's factor."""
+    """Return the share of the error that a relaxed Gauss-Seidel sweep leaves on a chain (Young 1954)."""
     root = 0.5 * (omega * jacobi + math.sqrt((omega * jacobi) ** 2 - 4 * (omega - 1)))
     return root**2
 
 
-# What the criterion's own steps, spread by 1/64 near its end, leave to the count, and the start of the asymptotics.
+# What the criterion's own steps, spread by 1/64 near its end, leave to the count, and the start of the
+# asymptotics.
 COUNTED = 0.05
 
 

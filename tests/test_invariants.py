@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import nscd_lmp
 import numpy as np
 import pytest
 from scenes import DOORS, FLOOR, GRAVITY, box_walls, cloud, energy, grains, harden, state, trajectory
+
+import nscd_lmp
 
 LAWS = list(nscd_lmp.LAWS)
 RADIUS, SIDE = 0.5, 4.2  # m
@@ -28,7 +29,9 @@ def test_gas_in_a_periodic_box_keeps_its_momentum_and_makes_no_energy(start, law
     momentum = (balls.mass[:, None] * v).sum(axis=1)
     before = balls.mass[:, None] * balls.v
     # an impulse is added here and subtracted there: round-off, 1e-16 an impact and grain, with random signs
-    np.testing.assert_allclose(momentum, np.tile(before.sum(axis=0), (500, 1)), rtol=0, atol=1e-14 * np.abs(before).sum())
+    np.testing.assert_allclose(
+        momentum, np.tile(before.sum(axis=0), (500, 1)), rtol=0, atol=1e-14 * np.abs(before).sum()
+    )
     kinetic = np.append(energy(balls, balls.x, balls.v), energy(balls, balls.x, v))
     # p (v + v') / 2 with v' off by the tolerance: up to 1e-10 m/s on 1e3 N s and ten contacts a step
     assert np.diff(kinetic).max() <= 1e-6
@@ -62,7 +65,8 @@ def test_newton_on_and_off_list_the_same_contacts(start, door, law):
         harden(lmp, door, law=law, restitution=0.5, tol=1e-12)
         lmp.command("run 100")
         ends.append(np.hstack(state(lmp)))
-    # the order of contacts may differ, so round-off does: 1e-12 m/s, times what 100 steps of impacts make of it
+    # the order of contacts may differ, so round-off does: 1e-12 m/s, times what 100 steps of impacts make of
+    # it
     np.testing.assert_allclose(ends[0], ends[1], rtol=0, atol=1e-9)
 
 
@@ -79,11 +83,13 @@ def test_pair_that_meets_on_both_sides_of_a_periodic_box_has_two_contacts(start,
     np.testing.assert_allclose(state(lmp)[1], 0, atol=1e-11)  # a few tol
 
 
-@pytest.mark.parametrize(("law", "expected"), [("moreau", [-0.6, 0.4, 0.4, 0.4, 0.4]), ("gap", [0, 0, 0, 0, 1.0])])
+@pytest.mark.parametrize(
+    ("law", "expected"), [("moreau", [-0.6, 0.4, 0.4, 0.4, 0.4]), ("gap", [0, 0, 0, 0, 1.0])]
+)
 def test_newton_s_cradle_answers_as_the_law_says(start, law, expected):
-    # moreau: (21) on all five contacts at once; the four at rest leave together, at 2 / N, the first returns at
-    # 2 / N - 1. gap: impacts propagate from ball to ball within the step, and the last one leaves, as in the toy.
-    # (ten balls are as good as five; with more than 50 law gap's rounds end)
+    # moreau: (21) on all five contacts at once; the four at rest leave together, at 2 / N, the first returns
+    # at 2 / N - 1. gap: impacts propagate from ball to ball within the step, and the last one leaves, as in
+    # the toy. (ten balls are as good as five; with more than 50 law gap's rounds end)
     x = [(-0.01, 0, 0), *((k, 0, 0) for k in range(1, 5))]
     balls = grains(x, RADIUS, mass=2.0, v=[(1.0, 0, 0)] + [(0, 0, 0)] * 4)
     lmp = start(balls, 1e-3)
@@ -104,8 +110,29 @@ def test_newton_s_cradle_keeps_momentum_and_energy_under_every_law(start, law):
     assert (v**2).sum() == pytest.approx(2.0, abs=1e-10)
 
 
+@pytest.mark.parametrize("gap", [1e-3, 2e-2])
+@pytest.mark.parametrize("law", LAWS)
+def test_impact_runs_down_a_chain_of_ever_lighter_balls(start, law, gap):
+    # each ball of a tenth of the mass leaves with 20/11 of the speed: 20 m/s at the end, of which no grain
+    # had any sign when the step began. A step moves the first ball by 1e-2 m, so impacts come several to a
+    # step or one.
+    mass = 10.0 ** np.arange(6, 0, -1)
+    balls = grains(
+        [(k * (1 + gap), 0, 0) for k in range(6)], RADIUS, mass=mass, v=[(1.0, 0, 0)] + [(0, 0, 0)] * 5
+    )
+    lmp = start(balls, 1e-2, vmax=20.0)
+    attached = harden(lmp, law=law, restitution=1.0, tol=1e-12, maxiter=100000, unconverged="ignore")
+    lmp.command("run 40")
+    speed = 9 / 11 * (20 / 11) ** np.arange(6)
+    speed[-1] = (20 / 11) ** 5
+    # tol over the impulse of the lightest ball, 1e2 N s, times the sweeps; then a factor of 20 down the chain
+    np.testing.assert_allclose(state(lmp)[1][:, 0], speed, rtol=0, atol=1e-9)
+    if law == "gap":
+        assert attached.stats["largest_overlap"].max() < 1e-12
+
+
 def heap():
-    """Return about 30 boulders in random places of a box of 1.9 m, many of which overlap by half a radius and more."""
+    """Return about 30 boulders in random places of a box of 1.9 m; many overlap by half a radius and more."""
     random = np.random.default_rng(1)
     places = random.uniform(0.25, 1.65, (60, 3))
     kept = [places[0]]
@@ -142,23 +169,23 @@ def test_overlapping_start_under_gravity_does_not_explode(start, law):
 
 @pytest.mark.parametrize("e", [0.0, 0.5])
 @pytest.mark.parametrize("law", LAWS)
-def test_energy_of_a_falling_cloud_never_exceeds_its_start_and_ends_at_rest(start, law, e):
-    balls = cloud(40, (0.25, 0.5), 2.1)
-    lmp = start(balls, 2e-3, gravity=GRAVITY, vmax=20.0)
-    harden(lmp, law=law, restitution=e, tol=1e-7, maxiter=2000, walls=box_walls(2.1), unconverged="ignore")
-    x, v = trajectory(lmp, 1500, 10)
+def test_energy_of_a_falling_cloud_never_exceeds_its_start_and_dies_down(start, law, e):
+    balls, dt = cloud(27, (0.25, 0.5), 3.2), 2e-3
+    lmp = start(balls, dt, gravity=GRAVITY, vmax=20.0)
+    harden(lmp, law=law, restitution=e, tol=1e-6, maxiter=2000, walls=box_walls(3.2), unconverged="ignore")
+    x, v = trajectory(lmp, 2500, 10)
     total = energy(balls, x, v, GRAVITY)
     begin = energy(balls, balls.x, balls.v, GRAVITY)
     assert total.max() <= begin * (1 + 1e-14)
-    # 2 s after the fall: what is left is the jitter of g dt = 0.02 m/s that (21) leaves to resting contacts
-    kinetic = energy(balls, x[-30:], v[-30:]).max()
-    assert kinetic <= 0.5 * balls.mass.sum() * (GRAVITY * 2e-3) ** 2
+    # 4 s after the fall; without friction a grain may still slide on the floor
+    assert energy(balls, x[-20:], v[-20:]).max() <= 1e-3 * (begin - total[-1])
 
 
 @pytest.mark.parametrize("theta", [0.0, 0.25, 0.5, 0.75, 1.0])
 def test_theta_of_a_bouncing_ball_shifts_its_energy_by_no_more_than_one_step_of_its_fall(start, theta):
-    # A step of free flight changes the energy by -(theta - 1/2) m (g dt)^2, and an impact at e = 1 by
-    # +(theta - 1/2) 2 m g dt v, which is what a flight of 2 v / g has taken: no drift for any theta, none at all at 1/2
+    # A step of free flight changes the energy by -(theta - 1/2) m (g dt)^2, and an impact at e = 1 by +(theta
+    # - 1/2) 2 m g dt v, which is what a flight of 2 v / g has taken: no drift for any theta, none at all at
+    # 1/2
     dt, drop, mass = 1e-3, 0.2, 1.0
     balls = grains((0, 0, RADIUS + drop), RADIUS, mass=mass)
     lmp = start(balls, dt, gravity=GRAVITY, vmax=4.0)

@@ -1,23 +1,25 @@
 """One contact, where every solver and law has a closed form to meet.
 
-The balls are boulders (r = 0.5 m, 1309 kg). Criterion (42) weighs a separating contact that is still pressed by
-|v p|, in N m: for impulses of 1 N s and more it bounds velocities, for those of sand grains it does not (last test).
+The balls are boulders (r = 0.5 m, 1309 kg). Criterion (42) weighs a contact that is pressed although it
+separates by |v p|, in N m: for impulses above 1 N s that bounds velocities, not for sand (last test).
 """
 
 from __future__ import annotations
 
 import math
 
-import nscd_lmp
 import numpy as np
 import pytest
 from scenes import FLOOR, GRAVITY, grains, harden, state, trajectory
+
+import nscd_lmp
 
 SOLVERS, LAWS = list(nscd_lmp.SOLVERS), list(nscd_lmp.LAWS)
 E_VALUES = (0.0, 0.5, 1.0)
 RADIUS = 0.5  # m
 TOL = 1e-12  # m/s
-# A converged contact has |v~| below tol, v~ = v / (1 + e) <= v / 2; then come a few roundings of speeds near 1.
+# A converged contact has |v~| below tol, v~ = v / (1 + e) <= v / 2; then come a few roundings of speeds near
+# 1.
 SPEED_ERROR = 4 * TOL
 
 
@@ -68,7 +70,7 @@ def test_two_unequal_balls_exchange_the_momentum_of_newton_s_law(start, solver, 
 
 
 def sliding_iterations(start, solver):
-    """Return the iterations per step of the paper's example 1: a ball slides on a plane, from P = 0 each step."""
+    """Return the iterations a step of the paper's example 1, a ball that slides on a plane, from P = 0."""
     lmp = start(grains((0, 0, 0.01), 0.01, v=(1.5, 0, 0)), 1e-4, gravity=GRAVITY, box=[(-1, 1)] * 3, vmax=2.0)
     attached = harden(lmp, law="moreau", tol=1e-7, warmstart=False, walls=[FLOOR], solver=solver)
     lmp.command("run 200")
@@ -104,7 +106,9 @@ def test_restitution_does_not_cost_iterations(ball, solver, law):
         lmp.command("run 1")
         assert attached.stats["unconverged_steps"][-1] == 0
         counts.append(attached.stats["iterations"][0])
-    assert max(counts) - min(counts) <= 2  # (1 + e) = 2 in p is one or two visits more of SBP, log(2) / log(9/5)
+    assert (
+        max(counts) - min(counts) <= 2
+    )  # (1 + e) = 2 in p is one or two visits more of SBP, log(2) / log(9/5)
 
 
 @pytest.mark.parametrize("e", E_VALUES)
@@ -115,7 +119,8 @@ def test_resting_ball_stays_where_it_is(ball, law, e):
     x, v = trajectory(lmp, steps)
     height = x[:, 0, 2] - RADIUS
     if law == "moreau" and e > 0:
-        # (21) gives every approach back: the ball hops on g dt, hops of (g dt)^2 / 2g, and sinks as far at most
+        # (21) gives every approach back: the ball hops on g dt, hops of (g dt)^2 / 2g, and sinks as far at
+        # most
         assert np.abs(v[:, 0, 2]).max() <= GRAVITY * dt * (1 + 1e-9)
         assert np.abs(height).max() <= GRAVITY * dt**2
         return
@@ -151,7 +156,14 @@ def test_parameter_far_from_its_default_is_right_or_reported(ball, solver, multi
     tol, maxiter = 1e-9, 1000
     parameter = {nscd_lmp.SOLVERS[solver].parameter: multiple}
     lmp, _, attached = ball(
-        0.0, (0, 0, -1.0), solver=solver, law="moreau", tol=tol, maxiter=maxiter, unconverged="ignore", **parameter
+        0.0,
+        (0, 0, -1.0),
+        solver=solver,
+        law="moreau",
+        tol=tol,
+        maxiter=maxiter,
+        unconverged="ignore",
+        **parameter,
     )
     lmp.command("run 1")
     solved = attached.stats["unconverged_steps"][-1] == 0
@@ -159,10 +171,13 @@ def test_parameter_far_from_its_default_is_right_or_reported(ball, solver, multi
     if solved:
         assert state(lmp)[1][0, 2] == pytest.approx(0, abs=tol)
     if solver in ("sbp", "sal"):
-        # |1 - rho W| a visit: 0.01 crawls to 4e-5 in 1000 visits; from 2 on the projection on p >= 0 makes a cycle
+        # |1 - rho W| a visit: 0.01 crawls to 4e-5 in 1000 visits; from 2 on the projection on p >= 0 makes a
+        # cycle
         assert solved == (maxiter * math.log(abs(1 - multiple) or tol) < math.log(tol))
     elif solver in ("ebp", "eal", "pdas"):
-        assert solved  # of one contact only the sign of tau matters, and that does not depend on the parameter
+        assert (
+            solved
+        )  # of one contact only the sign of tau matters, and that does not depend on the parameter
 
 
 @pytest.mark.parametrize("solver", ["sbp", "sal"])
@@ -183,7 +198,8 @@ def test_diverging_steps_are_counted_in_a_warning(ball, solver):
 
 @pytest.mark.parametrize("solver", ["sbp", "sal"])
 def test_relative_residual_shows_what_criterion_42_misses_for_sand(start, solver):
-    # 10 g and rho W = 2.5: v is 1.5 times the free velocity away from 0, which |v p| = 1.5e-8 N m does not show
+    # 10 g and rho W = 2.5: v is 1.5 times the free velocity away from 0, which |v p| = 1.5e-8 N m does not
+    # show
     lmp = start(grains((0, 0, 0.01), 0.01), 1e-4, gravity=GRAVITY)
     attached = harden(lmp, solver=solver, rho=2.5, law="moreau", walls=[FLOOR], warmstart=False)
     lmp.command("run 1")

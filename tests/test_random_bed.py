@@ -1,12 +1,13 @@
-"""All solvers on the problems of dense beds, against the solution of the same quadratic program by other means."""
+"""All solvers on the problems of dense beds, against the same quadratic program solved by other means."""
 
 from __future__ import annotations
 
-import nscd_lmp
 import numpy as np
 import pytest
 from scenes import GRAVITY, box_walls, cloud, grains, harden, state
 from scipy.optimize import nnls
+
+import nscd_lmp
 
 SOLVERS, LAWS = list(nscd_lmp.SOLVERS), list(nscd_lmp.LAWS)
 WIDTH = 3.2  # m; boulders of 0.25 to 0.5 m, for which criterion (42) bounds velocities
@@ -14,10 +15,11 @@ TOL = 1e-12
 
 
 def least_distance(system):
-    """Return the impulses by Lawson & Hanson's least distance programming, an active set method on no solver of ours.
+    """Return the impulses by the least distance programming of Lawson & Hanson (1974), an active set method.
 
-    The velocities u = M^1/2 v nearest to the free ones under A u >= -bias: with A = (M^-1/2 H)^T and h the bound on
-    the correction x, non-negative least squares on [A^T; h^T] y = (0, 1) gives x = A^T y / (1 - h y).
+    Wanted are the velocities u = M^1/2 v nearest to the free ones under A u >= -bias. With A = (M^-1/2 H)^T
+    and h the bound on the correction x, non-negative least squares on [A^T; h^T] y = (0, 1) gives
+    x = A^T y / (1 - h y), the impulses are y / (1 - h y).
     """
     w = system.delassus()
     free = system.velocity - w @ system.start
@@ -58,7 +60,9 @@ def bed():
     lmp.command("run 300")
     balls.x, _ = state(lmp)
     lmp.close()
-    balls.x *= 0.998  # overlaps of 1 mm, so that the random velocities do not open contacts before law moreau looks
+    balls.x *= (
+        0.998  # overlaps of 1 mm, so that the random velocities do not open contacts before law moreau looks
+    )
     balls.v = np.random.default_rng(4).normal(size=balls.x.shape)
     return balls
 
@@ -80,7 +84,9 @@ def references():
 @pytest.mark.parametrize("e", [0.0, 0.5])
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_velocities_of_a_shaken_bed_are_those_of_the_quadratic_program(start, bed, references, solver, law, e):
+def test_velocities_of_a_shaken_bed_are_those_of_the_quadratic_program(
+    start, bed, references, solver, law, e
+):
     walls = box_walls(WIDTH)
     if (law, e) not in references:
         references[law, e], attached = one_step(
@@ -89,8 +95,8 @@ def test_velocities_of_a_shaken_bed_are_those_of_the_quadratic_program(start, be
         assert attached.stats["contacts"][0] > 160  # a bed: more than two contacts a grain
     velocity, attached = one_step(start, bed, walls, law=law, restitution=e, solver=solver)
     assert attached.stats["unconverged_steps"][0] == 0
-    # ||dv||_M^2 = (p - p*)(v - v*) <= p v + p* max(0, -v) <= n tol (1 + p*) would allow 1e-5; NLGS ends far closer,
-    # at tol times the sweeps it needs a decade, about 1e2 to 1e3
+    # ||dv||_M^2 = (p - p*)(v - v*) <= p v + p* max(0, -v) <= n tol (1 + p*) would allow 1e-5; NLGS ends far
+    # closer, at tol times the sweeps it needs a decade, about 1e2 to 1e3
     np.testing.assert_allclose(velocity, references[law, e], rtol=0, atol=1e-9)
 
 
@@ -102,7 +108,11 @@ def test_impulses_of_a_bed_account_for_every_change_of_velocity(start, bed, law,
     rows = attached.contacts
     normal = np.array([rows["nx"], rows["ny"], rows["nz"]]).T
     expected = bed.v - [0, 0, GRAVITY * 1e-3]
-    np.add.at(expected, rows["tag_i"].astype(int) - 1, rows["impulse"][:, None] * normal / mass_of(bed, rows["tag_i"]))
+    np.add.at(
+        expected,
+        rows["tag_i"].astype(int) - 1,
+        rows["impulse"][:, None] * normal / mass_of(bed, rows["tag_i"]),
+    )
     pairs = rows["tag_j"] > 0
     push = (rows["impulse"][:, None] * normal)[pairs] / mass_of(bed, rows["tag_j"][pairs])
     np.subtract.at(expected, rows["tag_j"][pairs].astype(int) - 1, push)
@@ -117,7 +127,7 @@ def mass_of(balls, tags):
 
 
 def crystal():
-    """Return 27 touching spheres of unequal masses in a cubic grid, thrown into the corner of the box, and its walls.
+    """Return 27 touching spheres of unequal masses in a cubic grid that fills a box, and its walls.
 
     Every sphere touches up to six others or walls: 81 velocities, but 108 contacts, all of them shut.
     """
@@ -144,7 +154,8 @@ def test_velocities_of_a_hyperstatic_crystal_are_unique_though_its_impulses_are_
     assert np.linalg.matrix_rank(w, tol=1e-9 * np.linalg.norm(w, 2)) <= 81
     velocity, attached = one_step(start, balls, walls, law="gap", solver=solver)
     np.testing.assert_allclose(velocity, expected, rtol=0, atol=1e-9)  # as above
-    # the same motion from other impulses: they differ by more than any tolerance, in the null space of W alone
+    # the same motion from other impulses: they differ by more than any tolerance, in the null space of W
+    # alone
     difference = attached.contacts["impulse"] - impulse
     assert np.abs(difference).max() > 1e-3 * impulse.max()
     np.testing.assert_allclose(w @ difference, 0, atol=1e-9)

@@ -7,6 +7,9 @@
 
 namespace nscd {
 
+// Steps since the run began, at the first call: fix external calls in the setup too, fix python/invoke does not.
+constexpr int in_setup = 0, in_first_step = 1;
+
 ExternalFix::ExternalFix(const Library &library, const std::string &pair_style, double cutoff, int group_bit,
                          const Settings &settings, Step::CustomSolver custom) :
     library_(library),
@@ -16,35 +19,38 @@ ExternalFix::ExternalFix(const Library &library, const std::string &pair_style, 
 
 void ExternalFix::callback(void *self, std::int64_t, int owned, int *, double **, double **f_external)
 {
-  static_cast<ExternalFix *>(self)->guarded();
+  static_cast<ExternalFix *>(self)->guarded(in_setup);
   // The contact forces are in LAMMPS' own force array, to which fix external adds this one.
   if (owned > 0) std::fill_n(f_external[0], 3 * std::size_t(owned), 0.0);
 }
 
-void ExternalFix::invoke() { guarded(); }
+void ExternalFix::invoke(nanobind::handle, int) { guarded(in_first_step); }
 
 // Nothing may be thrown through LAMMPS: what goes wrong is kept, the run is made to end after this step, and the
 // caller of `run` raises it. Until then the arrays stay as they are.
-void ExternalFix::guarded()
+void ExternalFix::guarded(int first_call)
 {
   if (failure_) return;
   try {
-    advance();
+    const double elapsed = library_.get_thermo(library_.handle, "elapsed");
+    if (elapsed == first_call) begin_run(first_call);
+    if (elapsed > 0) advance();
   } catch (...) {
     failure_ = std::current_exception();
     library_.force_timeout(library_.handle);
   }
 }
 
+void ExternalFix::begin_run(int first_call)
+{
+  require_atoms();
+  find_list();
+  // A list that the setup built is as old as the run; grains stay where they are until the first step.
+  step_.begin_run(setting("neigh_ago") <= first_call);
+}
+
 void ExternalFix::advance()
 {
-  // LAMMPS calls fixes in the setup of each run too: no step is taken there.
-  if (library_.get_thermo(library_.handle, "elapsed") == 0) {
-    require_atoms();
-    find_list();
-    step_.begin_run(setting("neigh_ago") <= 0);
-    return;
-  }
   const Grains g = grains();
   step_.advance(g, pairs(g), *library_.global<double>("dt"));
   record(timestep());

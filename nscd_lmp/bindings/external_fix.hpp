@@ -1,9 +1,11 @@
-// The Python door: a whole step inside the callback of `fix external`, on LAMMPS' own arrays.
+// The Python door: a whole step inside `fix external` or `fix python/invoke`, on LAMMPS' own arrays.
 #pragma once
 
 #include "../core/report.hpp"
 #include "../core/step.hpp"
 #include "library.hpp"
+
+#include <nanobind/nanobind.h>
 
 #include <exception>
 #include <memory>
@@ -27,8 +29,8 @@ class ExternalFix {
 
   // Called by LAMMPS with the step's arrays: the signature of FixExternalFnPtr.
   static void callback(void *self, std::int64_t timestep, int owned, int *tags, double **x, double **f_external);
-  // The same without fix external: forces are written to LAMMPS' own array alone.
-  void invoke();
+  // Called by fix python/invoke, as a Python function, with the LAMMPS object and its virial flag; raises nothing.
+  void invoke(nanobind::handle lammps, int vflag);
 
   const Step &step() const { return step_; }
   const std::vector<StatsRow> &stats() const { return stats_; }
@@ -39,8 +41,9 @@ class ExternalFix {
   bool failed() const { return bool(failure_); }
 
  private:
+  void guarded(int first_call);
+  void begin_run(int first_call);
   void advance();
-  void guarded();
   int setting(const char *name) const;
   void require_atoms() const;
   void find_list();

@@ -18,8 +18,6 @@
 #include <cmath>
 #include <cstring>
 
-nscd::Progress nscd_progress;
-
 using namespace LAMMPS_NS;
 using namespace FixConst;
 

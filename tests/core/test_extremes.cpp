@@ -110,7 +110,8 @@ TEST(extreme_mass_ratios_keep_the_arrays_finite)
       Scene scene;
       scene.add({0, 0, 1}, 1, 1e-12);
       scene.add({0, 0, 3}, 1, 1e12, {0, 0, -1});
-      Step step(settings(std::string(law) + " unconverged ignore solver " + std::string(solver.name) + box_walls(9, 9)));
+      const std::string words = std::string(law) + " unconverged ignore solver " + std::string(solver.name);
+      Step step(settings(words + box_walls(9, 9)));
       scene.x[0] = scene.x[1] = scene.x[3] = scene.x[4] = 5;
       for (int k = 0; k < 10; ++k) {
         scene.accelerate({});

@@ -123,7 +123,8 @@ TEST(a_step_is_the_same_to_the_last_bit_each_time)
 {
   Random first(5), second(5);
   Scene a = random_scene(first, 40, 1, 0.1, 3), b = random_scene(second, 40, 1, 0.1, 3);
-  Step one(settings("law moreau restitution 0.5" + box_walls(1, 1))), two(settings("law moreau restitution 0.5" + box_walls(1, 1)));
+  const nscd::Settings chosen = settings("law moreau restitution 0.5" + box_walls(1, 1));
+  Step one(chosen), two(chosen);
   for (int k = 0; k < 50; ++k) {
     a.accelerate({0, 0, -10});
     b.accelerate({0, 0, -10});

@@ -94,7 +94,8 @@ static void refresh_images(Scene &scene)
 // Newton's third law for lists: whether LAMMPS lists a cross pair once or twice must not matter.
 TEST(periodic_random_scenes_do_not_depend_on_newton)
 {
-  const std::string walls = " wall plane 0 0 0 0 1 0 wall plane 0 0 0 0 0 1 wall plane 0 1 0 0 -1 0 wall plane 0 0 1 0 0 -1";
+  const std::string walls =
+      " wall plane 0 0 0 0 1 0 wall plane 0 0 0 0 0 1 wall plane 0 1 0 0 -1 0 wall plane 0 0 1 0 0 -1";
   for (const char *law : {"law moreau", "law gap"}) {
     Random one(99), two(99);
     Scene on = random_scene(one, 40, 1, 0.12, 2), off = random_scene(two, 40, 1, 0.12, 2);

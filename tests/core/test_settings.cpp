@@ -100,7 +100,8 @@ TEST(a_step_refuses_bad_settings_at_once)
 
 TEST(the_description_names_what_was_chosen)
 {
-  const std::string text = nscd::describe(checked("solver sal law moreau restitution 0.5 rho 0.3 wall plane 0 0 0 0 0 1"));
+  const std::string words = "solver sal law moreau restitution 0.5 rho 0.3 wall plane 0 0 0 0 0 1";
+  const std::string text = nscd::describe(checked(words));
   for (const char *part : {"moreau", "SAL", "rho = 0.3/W_nn", "1 wall", "restitution 0.5", "tol 1e-07"})
     check::says(__FILE__, __LINE__, text, part);
 }

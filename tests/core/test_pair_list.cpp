@@ -1,0 +1,103 @@
+// What must hold of the neighbor list: no contact missed, none counted twice.
+#include "check.hpp"
+#include "scene.hpp"
+
+using nscd::Step;
+
+static const std::string missed = "contacts could be missed";
+
+TEST(moves_since_the_list_was_built_count_towards_missed_contacts)
+{
+  Scene scene;
+  scene.add({0, 0, 5}, 1, 1, {0, 0, 1});
+  scene.reach = 0.25;
+  Step step(settings("law gap"));
+  scene.advance(step, 0.05);  // ahead 0.05
+  CHECK(!step.wants_rebuild());
+  scene.just_built = false;
+  scene.advance(step, 0.05);  // moved 0.05, ahead 0.05
+  CHECK(step.wants_rebuild());
+  CHECK_ERROR(scene.advance(step, 0.05), "moved 0.1 each, and dt v = 0.05");
+  scene.just_built = true;
+  CHECK(scene.advance(step, 0.05).contacts == 0);
+}
+
+// Law moreau looks half a step ahead, law gap a whole one.
+TEST(a_list_must_reach_as_far_as_a_step_looks_ahead)
+{
+  for (const double reach : {0.09, 0.11}) {
+    Scene scene;
+    scene.add({0, 0, 5}, 1, 1, {0, 0, 1});
+    scene.reach = reach;
+    Step step(settings("law moreau"));
+    if (reach < 0.1) CHECK_ERROR(scene.advance(step, 0.1), missed);
+    else scene.advance(step, 0.1);
+    scene.reach = 2 * reach;
+    Step gap(settings("law gap"));
+    if (reach < 0.1) CHECK_ERROR(scene.advance(gap, 0.1), missed);
+    else scene.advance(gap, 0.1);
+  }
+}
+
+TEST(a_new_run_may_bring_a_new_list)
+{
+  Scene scene;
+  scene.add({0, 0, 0}, 1);
+  scene.add({0, 0, 5}, 1);
+  scene.reach = 0.25;
+  scene.just_built = false;
+  Step step(settings("law gap"));
+  scene.advance(step, 0.05);
+  scene.x[5] = 2 - 1e-6;  // moved by hand between two runs
+  step.begin_run(false);
+  CHECK_ERROR(scene.advance(step, 0.05), missed);
+  step.begin_run(true);
+  CHECK(scene.advance(step, 0.05).contacts == 1);
+}
+
+TEST(images_may_change_with_each_new_list)
+{
+  Scene scene;
+  scene.add({0.5, 0, 0}, 1);
+  scene.add({5, 0, 0}, 1);
+  scene.add({8.6, 0, 0}, 1);
+  Step step(settings("law moreau"));
+  CHECK(scene.advance(step, 1e-9).contacts == 0);
+  scene.add_image(1, {10, 0, 0});
+  const int image = scene.add_image(2, {-10, 0, 0});
+  scene.list_all_pairs();
+  CHECK(scene.advance(step, 1e-9).contacts == 1);
+  CHECK(find_contact(step.state(), 0, image) != nullptr);
+  CHECK(step.state().owner[image] == 2);
+}
+
+TEST(a_full_list_is_refused)
+{
+  Scene scene;
+  for (int i = 0; i < 3; ++i) scene.add({1.9 * i, 0, 0}, 1);
+  scene.list_pairs({{1}, {0, 2}, {1}});
+  Step step(settings(""));
+  CHECK_ERROR(scene.advance(step, 1e-3), "full");
+}
+
+TEST(a_list_that_names_atoms_in_any_order_is_read_the_same)
+{
+  Scene plain, shuffled;
+  for (Scene *scene : {&plain, &shuffled})
+    for (int i = 0; i < 4; ++i) scene->add({1.9 * i, 0, 0}, 1, 1 + i, {i % 2 ? -1.0 : 1.0, 0, 0});
+  plain.list_pairs({{1, 2, 3}, {2, 3}, {3}, {}});
+  shuffled.list_pairs({{}, {0}, {1, 0}, {0, 2, 1}});
+  Step a(settings("law moreau tol 1e-13 maxiter 100000")), b(settings("law moreau tol 1e-13 maxiter 100000"));
+  CHECK(plain.advance(a, 1e-6).contacts == 3);
+  CHECK(shuffled.advance(b, 1e-6).contacts == 3);
+  for (std::size_t d = 0; d < plain.v.size(); ++d) CHECK_NEAR(shuffled.v[d], plain.v[d], 1e-11);
+}
+
+TEST(a_list_without_pairs_leaves_walls)
+{
+  Scene scene;
+  scene.add({0, 0, 0.9}, 1);
+  scene.list_pairs({{}});
+  Step step(settings("law moreau wall plane 0 0 0 0 0 1"));
+  CHECK(scene.advance(step, 1e-6).contacts == 1);
+}
