@@ -33,9 +33,7 @@ def bed_colormap() -> LinearSegmentedColormap:
     return LinearSegmentedColormap.from_list("bed", viridis)
 
 
-def compute_shown_bounds(
-    x: Array, radius: Array, bounds: Array, whole_box: bool = False
-) -> tuple[Array, bool]:
+def compute_shown_bounds(x: Array, radius: Array, bounds: Array, whole_box: bool = False) -> tuple[Array, bool]:
     """Box to draw, (3, 2), and whether its empty upper part was cut off.
 
     A box that is more than a quarter higher than the bed would shrink the bed to a crust; it is
@@ -129,9 +127,7 @@ def _plot_edge(ax: Axes, view: View, depth: Array, start: Array, end: Array, alp
     path = np.column_stack([column - 0.5, row - 0.5]) / 2.0  # the view has 2 x 2 rays per pixel
     breaks = np.flatnonzero(np.diff(free.astype(int))) + 1
     pieces = [run for run in np.split(np.arange(len(path)), breaks) if free[run[0]]]
-    ax.add_collection(
-        LineCollection([path[run] for run in pieces], colors=OUTLINE, linewidths=1.1, alpha=alpha)
-    )
+    ax.add_collection(LineCollection([path[run] for run in pieces], colors=OUTLINE, linewidths=1.1, alpha=alpha))
 
 
 def _plot_length(ax: Axes, view: View, bounds: Array, axis: int, text: str) -> None:
@@ -182,9 +178,7 @@ def main(words: Sequence[str]) -> None:
     parser.add_argument("--color", choices=COLORS, default="height", help="[height]")
     parser.add_argument("--azimuth", type=float, help="of the camera, degrees [-62; -90 if planar]")
     parser.add_argument("--elevation", type=float, help="of the camera, degrees [24; 90 if planar]")
-    parser.add_argument(
-        "--size", type=positive_int, default=1100, help="pixels of the longer side [1100]"
-    )
+    parser.add_argument("--size", type=positive_int, default=1100, help="pixels of the longer side [1100]")
     parser.add_argument("--whole-box", action="store_true", help="show its empty part too")
     arguments = parser.parse_args(words)
     frame = Packing(arguments.dump).frame(arguments.frame)

@@ -125,9 +125,7 @@ def compute_container(
     for row in np.asarray([] if planes is None else planes, dtype=np.float64).reshape(-1, 6):
         along = np.flatnonzero(row[3:])
         if len(along) != 1:
-            raise ValueError(
-                f"plane normal {row[3:]} is oblique, a profile needs normals along x, y or z"
-            )
+            raise ValueError(f"plane normal {row[3:]} is oblique, a profile needs normals along x, y or z")
         side = int(row[3 + along[0]] < 0.0)
         faces[along[0], side] = row[along[0]]
         given[along[0], side] = True
@@ -243,9 +241,7 @@ def main(words: Sequence[str]) -> None:
 
     parser = new_parser(__doc__, "bed_profile.png")
     parser.add_argument("--axis", choices=AXES, default="z", help="height axis [z]")
-    parser.add_argument(
-        "--slabs", type=positive_int, help="number of slabs [a third of a radius each]"
-    )
+    parser.add_argument("--slabs", type=positive_int, help="number of slabs [a third of a radius each]")
     add_plane_option(parser, "floor or side wall, where it is not the box face")
     arguments = parser.parse_args(words)
     frame = Packing(arguments.dump).frame(arguments.frame)

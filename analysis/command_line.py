@@ -16,9 +16,7 @@ from rich.table import Table
 _NEGATIVE_EXPONENTIAL = re.compile(r"-(\d+\.?\d*|\.\d+)[eE][-+]?\d+")
 
 
-def new_parser(
-    description: str | None, output: str, frames: str = "frame"
-) -> argparse.ArgumentParser:
+def new_parser(description: str | None, output: str, frames: str = "frame") -> argparse.ArgumentParser:
     """Make a parser with the dump file and the options common to all scripts.
 
     Parameters
@@ -30,14 +28,10 @@ def new_parser(
     frames : str
         What ``--frame`` chooses, for its help text.
     """
-    parser = argparse.ArgumentParser(
-        description=description, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("dump", help="LAMMPS text dump: dump custom with id x y z radius ...")
     parser.add_argument("--output", "-o", default=output, metavar="PNG", help=f"[{output}]")
-    parser.add_argument(
-        "--frame", type=int, default=-1, help=f"{frames}; from 0, or from the end with -1 [-1]"
-    )
+    parser.add_argument("--frame", type=int, default=-1, help=f"{frames}; from 0, or from the end with -1 [-1]")
     parser.add_argument(
         "--length-unit",
         choices=["auto", *LENGTH_UNITS],
@@ -76,10 +70,7 @@ def add_time_options(parser: argparse.ArgumentParser) -> None:
 
 def plain_decimals(words: Sequence[str]) -> list[str]:
     """Rewrite -4e-3 as -0.004: argparse takes a negative number with an exponent for an option."""
-    return [
-        format(Decimal(word), "f") if _NEGATIVE_EXPONENTIAL.fullmatch(word) else word
-        for word in words
-    ]
+    return [format(Decimal(word), "f") if _NEGATIVE_EXPONENTIAL.fullmatch(word) else word for word in words]
 
 
 def print_table(title: str, rows: Sequence[tuple[str, str]]) -> None:

@@ -71,9 +71,7 @@ def unit_planes(planes: ArrayLike | None) -> tuple[Array, Array]:
     return rows[:, :3], rows[:, 3:] / length
 
 
-def find_wall_contacts(
-    x: Array, radius: Array, planes: ArrayLike | None, reach: float = 0.0
-) -> Contacts:
+def find_wall_contacts(x: Array, radius: Array, planes: ArrayLike | None, reach: float = 0.0) -> Contacts:
     """Contacts with planes whose normals point to the grains.
 
     Parameters
@@ -168,9 +166,7 @@ def _candidates(positions: Array, unit: float, cutoff: float) -> tuple[Indices, 
         return np.empty(0, dtype=np.intp), np.empty(0, dtype=np.intp)
     scaled = (positions - positions.min(axis=0)) / unit
     margin = 4.0 * float(np.finfo(np.float32).eps) * (1.0 + scaled.max())
-    pairs = self_capped_distance(
-        scaled.astype(np.float32), cutoff / unit + margin, return_distances=False
-    )
+    pairs = self_capped_distance(scaled.astype(np.float32), cutoff / unit + margin, return_distances=False)
     pairs = np.sort(np.asarray(pairs, dtype=np.intp).reshape(-1, 2), axis=1)
     return pairs[:, 0], pairs[:, 1]
 

@@ -57,9 +57,7 @@ def compute_mass(radius: Array, density: float) -> Array:
     return np.asarray(density * 4.0 / 3.0 * np.pi * radius**3, dtype=np.float64)
 
 
-def compute_energy_history(
-    packing: Packing, density: float | None = None, every: int = 1
-) -> EnergyHistory:
+def compute_energy_history(packing: Packing, density: float | None = None, every: int = 1) -> EnergyHistory:
     """Kinetic energy of each `every`-th frame of a dump.
 
     Parameters
@@ -78,9 +76,7 @@ def compute_energy_history(
     """
     packing.require("vx", "vy", "vz")
     if density is None and not packing.has("mass"):
-        raise ValueError(
-            f"'{packing.path}' has no column mass: add it to the dump command, or give --density"
-        )
+        raise ValueError(f"'{packing.path}' has no column mass: add it to the dump command, or give --density")
     time, translational, rotational = [], [], []
     for number in range(0, len(packing), every):
         frame = packing.frame(number)
@@ -90,9 +86,7 @@ def compute_energy_history(
         translational.append(compute_translational_energy(frame.v, mass))
         if frame.omega is not None:
             rotational.append(compute_rotational_energy(frame.omega, mass, frame.radius))
-    return EnergyHistory(
-        np.array(time), np.array(translational), np.array(rotational) if rotational else None
-    )
+    return EnergyHistory(np.array(time), np.array(translational), np.array(rotational) if rotational else None)
 
 
 def plot_kinetic_energy(
@@ -148,9 +142,7 @@ def main(words: Sequence[str]) -> None:
     ]
     print_table(f"Kinetic energy, step {frame.step}", rows)
     figure, ax = new_figure()
-    plot_kinetic_energy(
-        ax, history.time, history.translational, history.rotational, unit, arguments.energy_unit
-    )
+    plot_kinetic_energy(ax, history.time, history.translational, history.rotational, unit, arguments.energy_unit)
     save_figure(figure, arguments.output)
 
 

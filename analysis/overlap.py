@@ -87,9 +87,7 @@ def compute_resolution(x: Array, radius: Array, digits: int = 17) -> float:
     return float(relative * np.abs(x).max() / radius.min())
 
 
-def compute_overlap_history(
-    frames: Sequence[Frame] | Any, planes: ArrayLike | None = None
-) -> OverlapHistory:
+def compute_overlap_history(frames: Sequence[Frame] | Any, planes: ArrayLike | None = None) -> OverlapHistory:
     """Largest and mean overlap of each frame; takes any iterable of `Frame`."""
     time, largest, mean, count = [], [], [], []
     for frame in frames:
@@ -98,9 +96,7 @@ def compute_overlap_history(
         largest.append(overlaps.max(initial=0.0))
         mean.append(overlaps.mean() if len(overlaps) else 0.0)
         count.append(len(overlaps))
-    return OverlapHistory(
-        np.array(time), np.array(largest), np.array(mean), np.array(count, dtype=np.intp)
-    )
+    return OverlapHistory(np.array(time), np.array(largest), np.array(mean), np.array(count, dtype=np.intp))
 
 
 def plot_overlap_distribution(ax: Axes, overlaps: Array) -> None:
@@ -142,9 +138,7 @@ def main(words: Sequence[str]) -> None:
     arguments = parser.parse_args(words)
     packing = Packing(arguments.dump, dt=arguments.dt)
     frame = packing.frame(arguments.frame)
-    overlaps = compute_overlaps(
-        frame.x, frame.radius, frame.bounds, frame.periodic, arguments.planes
-    )
+    overlaps = compute_overlaps(frame.x, frame.radius, frame.bounds, frame.periodic, arguments.planes)
     chosen = (packing.frame(k) for k in range(0, len(packing), arguments.every))
     history = compute_overlap_history(chosen, arguments.planes)
     digits = position_digits(frame.x)

@@ -173,8 +173,7 @@ class Packing:
         count = len(self)
         if not -count <= number < count:
             raise ValueError(
-                f"frame {number} asked for, '{self.path}' has frames 0 to {count - 1}"
-                " (or -1 for the last)"
+                f"frame {number} asked for, '{self.path}' has frames 0 to {count - 1} (or -1 for the last)"
             )
         header = self.headers[number]
         data = self.universe.trajectory[number % count].data

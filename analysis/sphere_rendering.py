@@ -218,9 +218,7 @@ def render_bed(
     return pixels.reshape(rows // 2, 2, columns // 2, 2, 3).mean(axis=(1, 3)), view, depth
 
 
-def _sky_light(
-    scene: Scene, points: Array, normals: Array, owner: NDArray[np.intp], lamps: int
-) -> Array:
+def _sky_light(scene: Scene, points: Array, normals: Array, owner: NDArray[np.intp], lamps: int) -> Array:
     """Light of the sky dome (m,) on the seen points, 1 on open level ground.
 
     It varies slowly on a grain, so of a block of 2 x 2 rays only those are worked out that do not
@@ -242,9 +240,7 @@ def _sky_light(
     return sky
 
 
-def _shade(
-    scene: Scene, points: Array, normals: Array, color: Array, to_eye: Array, sky: Array
-) -> Array:
+def _shade(scene: Scene, points: Array, normals: Array, color: Array, to_eye: Array, sky: Array) -> Array:
     """Colours (m, 3) of the seen points under sky and sun."""
     middle = to_eye.mean(axis=0) / np.linalg.norm(to_eye.mean(axis=0))
     right = np.cross(UP, middle)

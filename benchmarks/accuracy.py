@@ -81,16 +81,12 @@ def penalty(kn: float, dt: float, repeats: int, scene: dict[str, Any]) -> Result
     steps = round(float(lmp.extract_variable("time")) / dt)
     worst = _worst_overlap(lmp, steps)
     lmp.close()
-    return Result(
-        f"penalty kn = {kn:g} N/m", {"kn": kn, "dt": dt}, steps, best.cpu_seconds, best.wall_seconds, worst
-    )
+    return Result(f"penalty kn = {kn:g} N/m", {"kn": kn, "dt": dt}, steps, best.cpu_seconds, best.wall_seconds, worst)
 
 
 def _worst_overlap(lmp: Any, steps: int) -> float:
     n = lmp.extract_global("nlocal")
-    probe = Penetration(
-        lmp.numpy.extract_atom("radius")[:n].copy(), box_walls(float(lmp.extract_variable("lx")))
-    )
+    probe = Penetration(lmp.numpy.extract_atom("radius")[:n].copy(), box_walls(float(lmp.extract_variable("lx"))))
     worst = 0.0
     lmp.command("run 0 post no")
     for _ in range(steps):
@@ -117,9 +113,7 @@ def sedimentation(repeats: int, quick: bool, record: Record) -> list[Result]:
         }
         rows.append([result.method, *row.values()])
         more = {name: result.parameters.get(name) for name in ("law", "kn")}
-        record.add(
-            part="sedimentation", method=result.method, **more, **row, wall_seconds=result.wall_seconds
-        )
+        record.add(part="sedimentation", method=result.method, **more, **row, wall_seconds=result.wall_seconds)
     print_table(
         "Sedimentation of 60 balls, 0.01 s" if quick else "Sedimentation of 500 balls, 0.05 s",
         "method|dt, s|tol|steps|CPU s|largest overlap\n/ radius|iterations\na step|unconverged".split("|"),
@@ -197,12 +191,8 @@ def _draw_line(axes: Any, name: str, results: Sequence[Result]) -> None:
 
 def main(words: Sequence[str] | None = None) -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument(
-        "--parts", nargs="+", choices=["sedimentation", "balls"], default=["sedimentation", "balls"]
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--parts", nargs="+", choices=["sedimentation", "balls"], default=["sedimentation", "balls"])
     parser.add_argument("--output", type=Path, default=Path("output/benchmarks"), help="folder [%(default)s]")
     parser.add_argument("--repeats", type=int, default=3, help="runs of each [%(default)s]")
     parser.add_argument("--quick", action="store_true", help="small scenes, only to see that everything runs")

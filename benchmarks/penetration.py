@@ -31,9 +31,7 @@ class Penetration:
     def __init__(self, radius: Array, walls: Sequence[Plane]) -> None:
         self.radius = radius
         self.normals = np.array([wall.normal for wall in walls], dtype=float)
-        self.offsets = np.einsum(
-            "kd,kd->k", self.normals, np.array([wall.point for wall in walls], dtype=float)
-        )
+        self.offsets = np.einsum("kd,kd->k", self.normals, np.array([wall.point for wall in walls], dtype=float))
         self.margin = float(radius.min())
         self.listed_x: Array | None = None
         self.i = self.j = np.zeros(0, dtype=np.intp)

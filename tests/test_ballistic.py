@@ -111,9 +111,7 @@ def test_rebounds_form_a_geometric_sequence(start, law, e):
     dt = 5e-5
     _, speed, _, v, _ = bounces(start, law, e, dt)
     rebounds = v[1:][(v[1:] > 0) & (v[:-1] < 0)]
-    count = int(
-        math.log(50 * GRAVITY * dt / speed) / math.log(e)
-    )  # those well above the speed of a step's gravity
+    count = int(math.log(50 * GRAVITY * dt / speed) / math.log(e))  # those well above the speed of a step's gravity
     expected = speed * e ** np.arange(1, count + 1)
     # each impact comes within a step of its time, g dt in speed, which the next ones multiply by e: a series
     assert np.abs(rebounds[:count] - expected).max() <= 2 * GRAVITY * dt / (1 - e)

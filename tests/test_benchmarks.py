@@ -106,8 +106,6 @@ def test_table_1_has_the_iterations_of_the_paper(tmp_path: Path) -> None:
     # Counts, not timings: PDAS solves one contact in one iteration, EBP and EAL in two.
     words = ["--parts", "table1", "--quick", "--output", str(tmp_path)]
     subprocess.run([sys.executable, str(BENCHMARKS / "paper_tables.py"), *words], check=True, timeout=120)
-    iterations = {
-        row["solver"]: float(row["iterations_per_step"]) for row in rows(tmp_path / "paper_tables.csv")
-    }
+    iterations = {row["solver"]: float(row["iterations_per_step"]) for row in rows(tmp_path / "paper_tables.csv")}
     assert (iterations["pdas"], iterations["ebp"], iterations["eal"]) == (1, 2, 2)
     assert iterations["sbp"] > 10 and iterations["sal"] > 10

@@ -75,9 +75,7 @@ def test_run_closing_table_agrees_with_thermo_output(write_script, capsys):
         sum(row[2] for row in rows) / 40, abs=0.05
     )  # the table has one decimal
     assert float(table_value(shown, "worst overlap")) == pytest.approx(max(r[3] for r in rows), rel=5e-3)
-    assert float(table_value(shown, "worst overlap / radius")) == pytest.approx(
-        max(r[3] for r in rows) / 0.1, rel=5e-3
-    )
+    assert float(table_value(shown, "worst overlap / radius")) == pytest.approx(max(r[3] for r in rows) / 0.1, rel=5e-3)
     assert float(table_value(shown, "energy dissipated by contacts")) == pytest.approx(rows[-1][4], rel=5e-4)
     assert table_value(shown, "steps above tol") == "0"
 
@@ -86,9 +84,7 @@ def test_run_shares_of_time_add_up(write_script, capsys):
     cli.main(["run", write_script("run 2000"), "--log", "none"])
     shown = capsys.readouterr().out
     parts = [float(table_value(shown, f"time in {part}")) for part in ("LAMMPS", "contacts", "solver")]
-    assert sum(parts) == pytest.approx(
-        float(table_value(shown, "wall time")), abs=0.021
-    )  # four rounded numbers
+    assert sum(parts) == pytest.approx(float(table_value(shown, "wall time")), abs=0.021)  # four rounded numbers
 
 
 def test_run_sums_over_runs_loops_new_fixes_and_clear(write_script, capsys):

@@ -55,9 +55,7 @@ def sweeps_a_decade(start, solver, balls, rates=(1e-6, 1e-10)):
     """Return the iterations in which criterion (42) falls by ten, between two tolerances, from P = 0."""
     counts = []
     for tol in rates:
-        _, attached, _ = stand(
-            start, balls, solver=solver, law="moreau", tol=tol, maxiter=1000000, warmstart=False
-        )
+        _, attached, _ = stand(start, balls, solver=solver, law="moreau", tol=tol, maxiter=1000000, warmstart=False)
         assert attached.stats["unconverged_steps"][-1] == 0
         counts.append(attached.stats["iterations"][-1])
     return (counts[1] - counts[0]) / math.log10(rates[0] / rates[1])

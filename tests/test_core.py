@@ -35,9 +35,7 @@ def tool(name: str) -> str | None:
 
 def call(command: list[str], timeout: float) -> str:
     """Return the output of a command that must succeed."""
-    done = subprocess.run(
-        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout
-    )
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout)
     if done.returncode != 0:
         pytest.fail(f"{' '.join(command)}\n{done.stdout}", pytrace=False)
     return done.stdout

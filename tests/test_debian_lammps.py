@@ -66,9 +66,7 @@ def debian(tmp_path_factory: pytest.TempPathFactory) -> Run:
 
     def run(case: str, door: str, folder: Path) -> dict[str, Any]:
         script = Path(debian_scene.__file__)
-        execute(
-            home / "venv" / "bin" / "python", script, case, door, folder, LD_LIBRARY_PATH=str(home / "lib")
-        )
+        execute(home / "venv" / "bin" / "python", script, case, door, folder, LD_LIBRARY_PATH=str(home / "lib"))
         answer: dict[str, Any] = json.loads((folder / "answer.json").read_text())
         return answer
 

@@ -43,9 +43,7 @@ class Block:
 def blocks(page: Path) -> list[Block]:
     """Return the fenced code blocks of a page."""
     text = page.read_text()
-    return [
-        Block(text.count("\n", 0, found.start()) + 1, **found.groupdict()) for found in BLOCK.finditer(text)
-    ]
+    return [Block(text.count("\n", 0, found.start()) + 1, **found.groupdict()) for found in BLOCK.finditer(text)]
 
 
 def run(block: Block, folder: Path, where: str) -> None:
@@ -58,9 +56,7 @@ def run(block: Block, folder: Path, where: str) -> None:
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300,
     )  # fmt: skip
     if done.returncode != 0:
-        pytest.fail(
-            f"{where}: exit status {done.returncode}\n{block.text}\n{done.stdout[-3000:]}", pytrace=False
-        )
+        pytest.fail(f"{where}: exit status {done.returncode}\n{block.text}\n{done.stdout[-3000:]}", pytrace=False)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

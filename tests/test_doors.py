@@ -48,9 +48,7 @@ def test_doors_give_the_same_bits_and_columns_with_every_solver(start, solver):
     rows, ends = [], []
     for door in DOORS:
         lmp, _, walls = small_bed(start, "f f f")
-        attached = harden(
-            lmp, door, solver=solver, walls=walls, warmstart=False, unconverged="ignore", maxiter=200
-        )
+        attached = harden(lmp, door, solver=solver, walls=walls, warmstart=False, unconverged="ignore", maxiter=200)
         lmp.command("run 300")
         ends.append(np.hstack(state(lmp)))
         if door == "python":
@@ -178,11 +176,7 @@ def test_forces_after_a_step_are_the_mean_contact_forces(start, door):
     change[:, 2] += balls.mass * GRAVITY
     # difference of two velocities near 0.1 m/s: 1e-17 times m / dt = 1e-2
     np.testing.assert_allclose(forces(lmp), change, rtol=0, atol=1e-17)
-    rows = (
-        np.array(list(attached.contacts.values())).T
-        if attached
-        else lmp.numpy.extract_fix("nscd", 2, 2).copy()
-    )
+    rows = np.array(list(attached.contacts.values())).T if attached else lmp.numpy.extract_fix("nscd", 2, 2).copy()
     total = np.zeros_like(before)
     for tag_i, tag_j, *_, nx, ny, nz, _, impulse in rows:
         total[int(tag_i) - 1] += impulse / 1e-4 * np.array([nx, ny, nz])

@@ -112,9 +112,7 @@ def test_thermo_shows_iterations_and_the_eleven_columns(run, way):
     for row in rows[1:]:
         assert row["f_nscd[1]"] == 6  # five on five and the floor, one alone
         assert row["f_nscd"] == row["f_nscd[2]"] >= 1
-        assert row["f_nscd[3]"] == pytest.approx(
-            row["f_nscd[4]"] + row["f_nscd[5]"] + row["f_nscd[6]"], rel=1e-15
-        )
+        assert row["f_nscd[3]"] == pytest.approx(row["f_nscd[4]"] + row["f_nscd[5]"] + row["f_nscd[6]"], rel=1e-15)
         assert row["f_nscd[3]"] < 1e-12
         # the natural map of six velocities of up to n tol, over g dt = 1e-2 m/s
         assert row["f_nscd[7]"] < 1e-9

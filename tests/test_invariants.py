@@ -83,9 +83,7 @@ def test_pair_that_meets_on_both_sides_of_a_periodic_box_has_two_contacts(start,
     np.testing.assert_allclose(state(lmp)[1], 0, atol=1e-11)  # a few tol
 
 
-@pytest.mark.parametrize(
-    ("law", "expected"), [("moreau", [-0.6, 0.4, 0.4, 0.4, 0.4]), ("gap", [0, 0, 0, 0, 1.0])]
-)
+@pytest.mark.parametrize(("law", "expected"), [("moreau", [-0.6, 0.4, 0.4, 0.4, 0.4]), ("gap", [0, 0, 0, 0, 1.0])])
 def test_newton_s_cradle_answers_as_the_law_says(start, law, expected):
     # moreau: (21) on all five contacts at once; the four at rest leave together, at 2 / N, the first returns
     # at 2 / N - 1. gap: impacts propagate from ball to ball within the step, and the last one leaves, as in
@@ -117,9 +115,7 @@ def test_impact_runs_down_a_chain_of_ever_lighter_balls(start, law, gap):
     # had any sign when the step began. A step moves the first ball by 1e-2 m, so impacts come several to a
     # step or one.
     mass = 10.0 ** np.arange(6, 0, -1)
-    balls = grains(
-        [(k * (1 + gap), 0, 0) for k in range(6)], RADIUS, mass=mass, v=[(1.0, 0, 0)] + [(0, 0, 0)] * 5
-    )
+    balls = grains([(k * (1 + gap), 0, 0) for k in range(6)], RADIUS, mass=mass, v=[(1.0, 0, 0)] + [(0, 0, 0)] * 5)
     lmp = start(balls, 1e-2, vmax=20.0)
     attached = harden(lmp, law=law, restitution=1.0, tol=1e-12, maxiter=100000, unconverged="ignore")
     lmp.command("run 40")

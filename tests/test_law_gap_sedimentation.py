@@ -43,9 +43,7 @@ def test_columns_of_overlap_are_those_of_the_positions(sedimentation):
     np.fill_diagonal(pairs, 0)
     sides = [radius - x[:, 2], *(radius[:, None] - x[:, :2]).T, *(x[:, :2] + radius[:, None] - 8e-3).T]
     overlap = max(pairs.max(), *(side.max() for side in sides))
-    ratio = max(
-        (pairs / np.minimum(radius[:, None], radius)).max(), *((side / radius).max() for side in sides)
-    )
+    ratio = max((pairs / np.minimum(radius[:, None], radius)).max(), *((side / radius).max() for side in sides))
     # differences of numbers near 1e-2 m are right to 1e-18 m; over a radius of 2.5e-4 m and more
     assert attached.stats["largest_overlap"][-1] == pytest.approx(overlap, rel=0, abs=1e-17)
     assert attached.stats["largest_overlap_ratio"][-1] == pytest.approx(ratio, rel=0, abs=1e-13)

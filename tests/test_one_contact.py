@@ -106,9 +106,7 @@ def test_restitution_does_not_cost_iterations(ball, solver, law):
         lmp.command("run 1")
         assert attached.stats["unconverged_steps"][-1] == 0
         counts.append(attached.stats["iterations"][0])
-    assert (
-        max(counts) - min(counts) <= 2
-    )  # (1 + e) = 2 in p is one or two visits more of SBP, log(2) / log(9/5)
+    assert max(counts) - min(counts) <= 2  # (1 + e) = 2 in p is one or two visits more of SBP, log(2) / log(9/5)
 
 
 @pytest.mark.parametrize("e", E_VALUES)
@@ -175,9 +173,7 @@ def test_parameter_far_from_its_default_is_right_or_reported(ball, solver, multi
         # cycle
         assert solved == (maxiter * math.log(abs(1 - multiple) or tol) < math.log(tol))
     elif solver in ("ebp", "eal", "pdas"):
-        assert (
-            solved
-        )  # of one contact only the sign of tau matters, and that does not depend on the parameter
+        assert solved  # of one contact only the sign of tau matters, and that does not depend on the parameter
 
 
 @pytest.mark.parametrize("solver", ["sbp", "sal"])

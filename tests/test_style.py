@@ -13,9 +13,7 @@ ROOT = Path(__file__).parent.parent
 
 def python_module(*words: str, cwd: Path = ROOT) -> None:
     """Run ``python -m`` with these words; fail with what it printed."""
-    done = subprocess.run(
-        [sys.executable, "-m", *words], cwd=cwd, capture_output=True, text=True, timeout=300
-    )
+    done = subprocess.run([sys.executable, "-m", *words], cwd=cwd, capture_output=True, text=True, timeout=300)
     if done.returncode != 0:
         pytest.fail(done.stdout + done.stderr, pytrace=False)
 

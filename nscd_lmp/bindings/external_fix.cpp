@@ -10,10 +10,10 @@ namespace nscd {
 // Steps since the run began, at the first call: fix external calls in the setup too, fix python/invoke does not.
 constexpr int in_setup = 0, in_first_step = 1;
 
-ExternalFix::ExternalFix(const Library &library, const std::string &pair_style, double cutoff, int group_bit,
+ExternalFix::ExternalFix(const Library &library, const std::string &id, const std::string &pair_style, double cutoff, int group_bit,
                          const Settings &settings, Step::CustomSolver custom) :
     library_(library),
-    pair_style_(pair_style), cutoff_(cutoff), group_bit_(group_bit), step_(settings, std::move(custom))
+    id_(id), pair_style_(pair_style), cutoff_(cutoff), group_bit_(group_bit), step_(settings, std::move(custom))
 {
 }
 
@@ -44,6 +44,7 @@ void ExternalFix::guarded(int first_call)
 void ExternalFix::begin_run(int first_call)
 {
   require_atoms();
+  require_last();
   find_list();
   // A list that the setup built is as old as the run; grains stay where they are until the first step.
   step_.begin_run(setting("neigh_ago") <= first_call);
@@ -64,6 +65,16 @@ void ExternalFix::require_atoms() const
   if (setting("tagint") != 4) fail("this LAMMPS was built with 64-bit atom IDs; nscd needs 32-bit ones");
   if (setting("world_size") != 1)
     fail("nscd runs on one MPI rank, this run has ", setting("world_size"), ": start LAMMPS on one rank");
+}
+
+// Fixes act in the order of their definition: forces of one behind ours would be missed.
+void ExternalFix::require_last() const
+{
+  char last[256] = "";
+  library_.id_name(library_.handle, "fix", library_.id_count(library_.handle, "fix") - 1, last, sizeof last);
+  if (id_ != last)
+    fail("fix ", last, " was defined after attach by the script that runs the steps, and what it does would be missed: "
+         "define it before, or give LAMMPS the commands one by one (lmp.command, commands_list or commands_string)");
 }
 
 void ExternalFix::find_list()
@@ -129,6 +140,7 @@ void ExternalFix::record(std::int64_t timestep)
   StatsRow row{timestep, {}, report.seconds_contacts, report.seconds_solver};
   for (int c = 0; c < report_columns; ++c) row.columns[c] = report_column(report, c);
   stats_.push_back(row);
+  unconverged_ += !report.converged;
 }
 
 }    // namespace nscd

@@ -24,7 +24,7 @@ struct StatsRow {
 class ExternalFix {
  public:
   // `cutoff`: pair cutoff plus skin, m, up to which centres are listed at a build.
-  ExternalFix(const Library &library, const std::string &pair_style, double cutoff, int group_bit,
+  ExternalFix(const Library &library, const std::string &id, const std::string &pair_style, double cutoff, int group_bit,
               const Settings &settings, Step::CustomSolver custom);
 
   // Called by LAMMPS with the step's arrays: the signature of FixExternalFnPtr.
@@ -34,6 +34,8 @@ class ExternalFix {
 
   const Step &step() const { return step_; }
   const std::vector<StatsRow> &stats() const { return stats_; }
+  // Steps that ended above tol since this was last asked.
+  long unconverged_since_asked() { return std::exchange(unconverged_, 0); }
   void set_cutoff(double cutoff) { cutoff_ = cutoff; }
 
   // What stopped the run; empty if nothing did. Reading it forgets it.
@@ -46,6 +48,7 @@ class ExternalFix {
   void advance();
   int setting(const char *name) const;
   void require_atoms() const;
+  void require_last() const;
   void find_list();
   Grains grains();
   PairList pairs(const Grains &grains);
@@ -53,7 +56,7 @@ class ExternalFix {
   std::int64_t timestep() const;
 
   Library library_;
-  std::string pair_style_;
+  std::string id_, pair_style_;
   double cutoff_;
   int group_bit_;
   Step step_;
@@ -63,6 +66,7 @@ class ExternalFix {
   std::vector<double> masses_;
   std::vector<StatsRow> stats_;
   double largest_radius_ = 0;
+  long unconverged_ = 0;
   std::exception_ptr failure_;
 };
 

@@ -18,6 +18,8 @@ struct Library {
   int (*neighlist_num_elements)(void *, int) = nullptr;
   void (*neighlist_element_neighbors)(void *, int, int, int *, int *, int **) = nullptr;
   void (*force_timeout)(void *) = nullptr;
+  int (*id_count)(void *, const char *) = nullptr;
+  int (*id_name)(void *, const char *, int, char *, int) = nullptr;
 
   template <class T>
   T *per_atom(const char *name) const

@@ -36,8 +36,8 @@ int body_index(const State &s, int body) { return body < s.grains.owned && s.bod
 nb::dict contact_system(const State &s, const nscd::ContactView &view)
 {
   const auto n = view.contacts.size();
-  const auto *bodies = s.bodies.data();
   const auto &contacts = view.contacts;
+  const auto *bodies = s.bodies.data();
   nb::dict d;
   d["body_i"] = make_array<int>(n, 0, [&](auto k, auto) { return body_index(s, contacts[k].i); });
   d["body_j"] = make_array<int>(n, 0, [&](auto k, auto) { return body_index(s, contacts[k].j); });
@@ -83,6 +83,8 @@ nscd::Library make_library(const nb::dict &addresses)
   load("lammps_neighlist_num_elements", library.neighlist_num_elements);
   load("lammps_neighlist_element_neighbors", library.neighlist_element_neighbors);
   load("lammps_force_timeout", library.force_timeout);
+  load("lammps_id_count", library.id_count);
+  load("lammps_id_name", library.id_name);
   return library;
 }
 
@@ -140,24 +142,25 @@ void bind_external_fix(nb::module_ &m)
   nb::class_<ExternalFix>(m, "ExternalFix")
       .def(
           "__init__",
-          [](ExternalFix *self, const nb::dict &library, const std::string &pair_style, double cutoff, int group_bit,
+          [](ExternalFix *self, const nb::dict &library, const std::string &id, const std::string &pair_style,
+             double cutoff, int group_bit,
              const std::vector<std::string> &keywords, nb::object solver) {
             nscd::Settings settings;
             nscd::parse_keywords(settings, keywords);
-            new (self) ExternalFix(make_library(library), pair_style, cutoff, group_bit, settings,
+            new (self) ExternalFix(make_library(library), id, pair_style, cutoff, group_bit, settings,
                                    python_solver(std::move(solver)));
           },
-          "library"_a, "pair_style"_a, "cutoff"_a, "group_bit"_a, "keywords"_a, "solver"_a.none())
+          "library"_a, "id"_a, "pair_style"_a, "cutoff"_a, "group_bit"_a, "keywords"_a, "solver"_a.none())
       .def_prop_ro("callback_address", [](const ExternalFix &) { return std::uintptr_t(&ExternalFix::callback); })
       .def_prop_ro("self_address", [](const ExternalFix &fix) { return std::uintptr_t(&fix); })
       .def("invoke", &ExternalFix::invoke)
       .def("set_cutoff", &ExternalFix::set_cutoff, "cutoff"_a)
       .def_prop_ro("failed", &ExternalFix::failed)
-      .def_prop_ro("unconverged_steps", [](const ExternalFix &fix) { return fix.step().report().unconverged; })
+      .def("unconverged_since_asked", &ExternalFix::unconverged_since_asked)
       .def("raise_failure", [](ExternalFix &fix) { if (auto e = fix.take_failure()) std::rethrow_exception(e); })
       .def("stats_bytes", &stats_bytes)
       .def("contact_rows", &contact_rows)
-      .def("describe", [](const ExternalFix &fix) { return nscd::describe(fix.step().settings()); });
+      .def("describe", [](const ExternalFix &fix) { return nscd::describe(fix.step()); });
 }
 
 }    // namespace

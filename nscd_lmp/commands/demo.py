@@ -86,9 +86,7 @@ def _draw(analysis: Path, width: float) -> dict[str, str]:
     running = {}
     for script, words in options.items():
         command = [sys.executable, str(analysis / f"{script}.py"), DUMP, "-o", f"{script}.png", *words]
-        running[script] = subprocess.Popen(
-            command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
-        )
+        running[script] = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     for script, process in running.items():
         _, errors = process.communicate()
         if process.returncode != 0:

@@ -1,6 +1,5 @@
 #include "report.hpp"
 
-#include <cmath>
 #include <sstream>
 
 namespace nscd {
@@ -42,17 +41,23 @@ void fill_contact_rows(const State &s, double *row)
   }
 }
 
-std::string describe(const Settings &s)
+static std::string describe_solver(const Settings &s)
 {
   const SolverEntry &solver = find_solver(s.solver);
   std::ostringstream text;
-  const double given = solver.parameter == "rho" ? s.rho : s.gamma;
-  text << "law " << s.law << ", NLGS with " << solver.title << " (" << solver.parameter << " = "
-       << (std::isnan(given) ? solver.default_parameter : given) << "/W_nn), tol " << s.tol << ", "
-       << s.walls.size() << (s.walls.size() == 1 ? " wall" : " walls") << "; "
-       << "frictionless: 1 unknown per contact, no spins; "
-       << (s.restitution > 0 ? "impacts with restitution " : "no restitution term");
-  if (s.restitution > 0) text << s.restitution;
+  text << "NLGS with " << solver.title << " (" << solver.parameter << " = " << solver_parameter(s, solver) << "/W_nn)";
+  return text.str();
+}
+
+std::string describe(const Step &step)
+{
+  const Settings &s = step.settings();
+  std::ostringstream text;
+  text << "law " << s.law << ", " << (step.has_custom_solver() ? "a solver handed in" : describe_solver(s)) << ", tol "
+       << s.tol << ", " << s.walls.size() << (s.walls.size() == 1 ? " wall" : " walls")
+       << "; frictionless: 1 unknown per contact, no spins; ";
+  if (s.restitution > 0) text << "impacts with restitution " << s.restitution;
+  else text << "no restitution term";
   text << "; one rank: no exchange";
   return text.str();
 }

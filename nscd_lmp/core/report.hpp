@@ -55,6 +55,6 @@ constexpr int contact_columns = int(contact_column_names.size());
 void fill_contact_rows(const State &state, double *rows);
 
 // One line: what was chosen for the scene.
-std::string describe(const Settings &settings);
+std::string describe(const Step &step);
 
 }    // namespace nscd

@@ -4,6 +4,8 @@
 #include "law.hpp"
 #include "solver.hpp"
 
+#include <cmath>
+
 namespace nscd {
 
 Unconverged parse_unconverged(const std::string &word)
@@ -29,11 +31,16 @@ static void require_range(const char *what, double value, double lo, double hi)
     fail(what, " = ", value, " is outside [", lo, ", ", hi, "]");
 }
 
-static void check_parameter(const char *keyword, double value, const SolverEntry &solver)
+double solver_parameter(const Settings &s, const SolverEntry &solver)
 {
-  if (std::isnan(value)) return;
-  if (!(value > 0 && std::isfinite(value)))
-    fail(keyword, " = ", value, " must be > 0: it is a multiple of 1/W_nn, and the default is a good start");
+  return (solver.parameter == "rho" ? s.rho : s.gamma).value_or(solver.default_parameter);
+}
+
+static void check_parameter(const char *keyword, std::optional<double> value, const SolverEntry &solver)
+{
+  if (!value) return;
+  if (!(*value > 0 && std::isfinite(*value)))
+    fail(keyword, " = ", *value, " must be > 0: it is a multiple of 1/W_nn, and the default is a good start");
   if (solver.parameter != keyword)
     fail("keyword ", keyword, " is not a parameter of solver ", solver.name, ", which takes ", solver.parameter);
 }

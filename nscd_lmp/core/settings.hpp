@@ -1,7 +1,7 @@
 // What the user chooses, and the checks on it: one place for both doors.
 #pragma once
 
-#include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,8 +24,8 @@ struct Settings {
   double tol = 1e-7;             // on criterion (42)
   int maxiter = 1000;
   bool warmstart = true;
-  double rho = NAN;              // multiple of 1/W_nn; NAN: the solver's own default
-  double gamma = NAN;
+  std::optional<double> rho;     // multiple of 1/W_nn; none: the solver's own default
+  std::optional<double> gamma;
   double theta = 0.5;            // law moreau
   double recovery = 0.2;         // law gap: share of an overlap given back per step, speed-limited
   Unconverged unconverged = Unconverged::warn;
@@ -34,6 +34,10 @@ struct Settings {
 
 // Reads `keyword value ...` as fix nscd takes them; raises Error for an unknown keyword or a value that is no number.
 void parse_keywords(Settings &settings, const std::vector<std::string> &words);
+
+struct SolverEntry;
+// rho or gamma, whichever the solver takes, as a multiple of 1/W_nn.
+double solver_parameter(const Settings &settings, const SolverEntry &solver);
 
 // Raises Error (value, limit, remedy) for anything out of range; normalises the walls' normals.
 Settings checked(Settings settings);

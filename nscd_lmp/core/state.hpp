@@ -23,18 +23,18 @@ struct State {
   Grains grains;
   double dt = 0;
 
-  std::vector<Sphere> spheres;         // (owned + ghosts)
-  std::vector<int> owner;              // (owned + ghosts) index of the body that an atom is (an image of)
-  AlignedVector<Body> bodies;          // (owned + obstacle_copies)
-  AlignedVector<Vec4> displacement;    // (owned) from where contacts were sought to q_{k+1}
-  std::vector<Contact> contacts;
-  std::vector<ContactInfo> infos;      // beside contacts
-  std::vector<double> impact_impulse;  // beside contacts, N s, of impacts resolved ahead of them; or empty
+  std::vector<Sphere> spheres{};         // (owned + ghosts)
+  std::vector<int> owner{};              // (owned + ghosts) index of the body that an atom is (an image of)
+  AlignedVector<Body> bodies{};          // (owned + obstacle_copies)
+  AlignedVector<Vec4> displacement{};    // (owned) from where contacts were sought to q_{k+1}
+  std::vector<Contact> contacts{};
+  std::vector<ContactInfo> infos{};      // beside contacts
+  std::vector<double> impact_impulse{};  // beside contacts, N s, of impacts resolved ahead of them; or empty
 
-  std::vector<Candidate> found;        // listed pairs that are near enough to watch, the first found_count
+  std::vector<Candidate> found{};        // listed pairs that are near enough to watch, the first found_count
   std::size_t found_count = 0;
-  std::vector<Candidate> touching;     // contacts-to-be, in list order
-  std::vector<Candidate> near;         // watched by law gap: made contacts if the solution drives them together
+  std::vector<Candidate> touching{};     // contacts-to-be, in list order
+  std::vector<Candidate> near{};         // watched by law gap: made contacts if the solution drives them together
 
   double watch = 0;                    // surface distance within which pairs are watched, m
   double smooth_kick = 0;              // largest |dt f / m| of the step, m/s

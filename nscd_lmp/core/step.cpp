@@ -27,8 +27,7 @@ Step::Step(const Settings &settings, CustomSolver custom) :
 {
   options_.tol = settings_.tol;
   options_.maxiter = settings_.maxiter;
-  const double given = solver_->parameter == "rho" ? settings_.rho : settings_.gamma;
-  options_.parameter = std::isnan(given) ? solver_->default_parameter : given;
+  options_.parameter = solver_parameter(settings_, *solver_);
 }
 
 void Step::begin_run(bool list_just_built)
@@ -139,15 +138,19 @@ NSCD_HOT void Step::start_contacts(std::size_t first)
   }
 }
 
+// A custom solver is shown the bodies without the impulses that it is to find.
 void Step::ask_custom(std::span<Contact> contacts, std::span<const ContactInfo> infos)
 {
   workspace_.resize(contacts.size());
-  for (std::size_t k = 0; k < contacts.size(); ++k) workspace_[k] = contacts[k].impulse;
-  custom_(state_, {contacts, infos}, workspace_);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
-    Contact &c = contacts[k];
-    apply_impulse(c, workspace_[k] - c.impulse, state_.bodies.data());
-    c.impulse = workspace_[k];
+    workspace_[k] = contacts[k].impulse;
+    apply_impulse(contacts[k], -contacts[k].impulse, state_.bodies.data());
+  }
+  if (!contacts.empty()) custom_(state_, {contacts, infos}, workspace_);
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    if (!std::isfinite(workspace_[k])) fail("the solver handed in returned an impulse that is not a finite number");
+    contacts[k].impulse = workspace_[k];
+    apply_impulse(contacts[k], contacts[k].impulse, state_.bodies.data());
   }
 }
 

@@ -53,6 +53,7 @@ class Step {
 
   const StepReport &report() const { return report_; }
   const Settings &settings() const { return settings_; }
+  bool has_custom_solver() const { return bool(custom_); }
   const State &state() const { return state_; }
 
   // True if the next step needs a fresh neighbor list to be sure of every contact.

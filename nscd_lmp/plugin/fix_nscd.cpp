@@ -120,7 +120,7 @@ void FixNscd::setup(int /*vflag*/)
   steps_ = 0;
   nscd_progress.begin_run(update->beginstep, update->endstep, update->ntimestep);
   if (comm->me == 0)
-    utils::logmesg(lmp, "fix nscd {}: {}\n", id, nscd::describe(step_->settings()));
+    utils::logmesg(lmp, "fix nscd {}: {}\n", id, nscd::describe(*step_));
 }
 
 // Surface distance up to which all pairs were listed at the last build: over the type pairs, cutoff + skin less

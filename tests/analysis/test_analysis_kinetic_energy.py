@@ -70,9 +70,7 @@ def test_ball_of_lammps_falls_and_spins(tmp_path):
 def test_rotation_uses_the_inertia_of_a_solid_sphere():
     omega = np.array([[0.0, 0.0, 2.0]])
     # 1/2 * 2/5 * 3 * 0.1^2 * 2^2
-    assert compute_rotational_energy(omega, np.array([3.0]), np.array([0.1])) == pytest.approx(
-        0.024
-    )
+    assert compute_rotational_energy(omega, np.array([3.0]), np.array([0.1])) == pytest.approx(0.024)
 
 
 def test_density_stands_in_for_masses(write_dump):

@@ -33,9 +33,7 @@ def test_overlap_through_a_periodic_face(write_dump):
     # centres 0.1 before and behind the face at x = 3, overlap 1e-9 of the radius
     x = np.array([[2.9, 0.5, 0.5], [1.1 - 1e-10, 0.5, 0.7]])
     x[1, 2] = 0.5
-    path = write_dump(
-        {"x": x, "radius": [0.1, 0.1]}, bounds=((1, 3), (0, 1), (0, 1)), boundary="pp ff ff"
-    )
+    path = write_dump({"x": x, "radius": [0.1, 0.1]}, bounds=((1, 3), (0, 1), (0, 1)), boundary="pp ff ff")
     frame = Packing(path).frame(0)
     overlaps = compute_overlaps(frame.x, frame.radius, frame.bounds, frame.periodic)
     np.testing.assert_allclose(overlaps, [1e-9], atol=1e-14)

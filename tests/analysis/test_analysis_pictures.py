@@ -47,9 +47,7 @@ def run_script(name, *words):
 @pytest.mark.parametrize("name", SCRIPTS)
 def test_script_prints_a_table_and_writes_a_picture(name, bed_dump, tmp_path):
     output = tmp_path / "new" / f"{name}.png"
-    done = run_script(
-        name, bed_dump, "--output", output, *(["--size", 200] * (name == "bed_picture"))
-    )
+    done = run_script(name, bed_dump, "--output", output, *(["--size", 200] * (name == "bed_picture")))
     assert done.returncode == 0, done.stderr
     assert "step 100" in done.stdout and "│" in done.stdout
     pixels = matplotlib.image.imread(output)

@@ -25,11 +25,10 @@ void says(const char *file, int line, const std::string &message, const std::str
 // The statement must raise nscd::Error with this part in its message.
 #define CHECK_ERROR(statement, part) \
   do { \
-    std::string message = "no error from " #statement; \
     try { \
       statement; \
+      check::failed(__FILE__, __LINE__, "no error from " #statement); \
     } catch (const nscd::Error &error) { \
-      message = error.what(); \
+      check::says(__FILE__, __LINE__, error.what(), part); \
     } \
-    check::says(__FILE__, __LINE__, message, part); \
   } while (false)

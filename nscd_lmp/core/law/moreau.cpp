@@ -6,8 +6,8 @@
 //   q_{k+1} = q_m + theta dt v_{k+1}
 //
 // Makes exact: with theta = 1/2 the free flight, and with e = 1 also the energy, to round-off.
-// Fails: contacts are seen only once they overlap. The overlap is O(dt v) and never given back; theta < 1/2
-// gains energy, theta > 1/2 loses it.
+// Fails: contacts are seen only once they overlap. The overlap is O(dt v) and never given back. In free flight
+// theta < 1/2 gains energy and theta > 1/2 loses it, (theta - 1/2) m g^2 dt^2 a step.
 #include "../law.hpp"
 
 namespace nscd {
