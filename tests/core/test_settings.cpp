@@ -13,7 +13,7 @@ TEST(keywords_set_what_they_name)
       "unconverged error wall plane 1 2 3 0 0 4 wall plane 0 0 0 0 1 0");
   CHECK(s.solver == "sal" && s.law == "moreau" && s.maxiter == 7 && !s.warmstart);
   CHECK(s.restitution == 0.5 && s.tol == 1e-9 && s.rho == 0.25 && s.theta == 0.75 && s.recovery == 0.1);
-  CHECK(std::isnan(s.gamma) && s.unconverged == nscd::Unconverged::error);
+  CHECK(!s.gamma && s.unconverged == nscd::Unconverged::error);
   CHECK(s.walls.size() == 2 && s.walls[0].point[1] == 2 && s.walls[0].normal[2] == 4 && s.walls[1].normal[1] == 1);
   CHECK(settings("solver pdas gamma 2").gamma == 2);
 }
@@ -23,7 +23,7 @@ TEST(no_keywords_leave_the_defaults)
   const nscd::Settings s = checked("");
   CHECK(s.solver == "pdas" && s.law == "gap" && s.restitution == 0 && s.tol == 1e-7 && s.maxiter == 1000);
   CHECK(s.warmstart && s.unconverged == nscd::Unconverged::warn && s.walls.empty());
-  CHECK(std::isnan(s.rho) && std::isnan(s.gamma));
+  CHECK(!s.rho && !s.gamma);
 }
 
 TEST(a_later_keyword_overrides_an_earlier_one)
