@@ -124,7 +124,7 @@ def exception(door: str, folder: Path) -> dict[str, Any]:
 
 
 def exception_at_once(door: str, folder: Path) -> dict[str, Any]:
-    """Fail in the very first step."""
+    """Fail in the first call."""
     return failing_solver(door, folder, when=1, how="exception")
 
 
