@@ -21,6 +21,7 @@ void ImpulseMemory::remember(std::span<const Contact> contacts, std::span<const 
   forget();
   const std::size_t last = table_.size() - 1;
   for (std::size_t k = 0; k < contacts.size(); ++k) {
+    if (k + prefetch_distance < infos.size()) prefetch(infos[k + prefetch_distance].key);
     std::size_t s = slot(infos[k].key);
     while (table_[s].key != 0) s = (s + 1) & last;
     table_[s] = {infos[k].key, contacts[k].impulse};

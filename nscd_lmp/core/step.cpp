@@ -131,9 +131,11 @@ NSCD_HOT void Step::start_contacts(std::size_t first)
   const auto added = std::span(state_.contacts).subspan(first);
   free_norm_ = std::hypot(first == 0 ? 0 : free_norm_, free_norm(added));
   if (!settings_.warmstart) return;
+  const auto &infos = state_.infos;
   for (std::size_t k = first; k < state_.contacts.size(); ++k) {
+    if (k + prefetch_distance < infos.size()) memory_.prefetch(infos[k + prefetch_distance].key);
     Contact &c = state_.contacts[k];
-    c.impulse = memory_.recall(state_.infos[k].key);
+    c.impulse = memory_.recall(infos[k].key);
     apply_impulse(c, c.impulse, state_.bodies.data());
   }
 }
