@@ -83,7 +83,7 @@ TEST(overlaps_beyond_a_radius_are_refused)
 TEST(contacts_that_could_be_missed_are_refused)
 {
   refuses("", [](Scene &s) { s.reach = 0.001; }, "contacts could be missed");
-  refuses("", [](Scene &s) { s.reach = -1; }, "pairs only up to -1 apart: raise the cutoff");
+  refuses("", [](Scene &s) { s.reach = -1; }, "1 less than the largest diameter: raise the cutoff");
 }
 
 TEST(a_step_that_is_not_solved_is_an_error_if_asked)
