@@ -6,9 +6,9 @@ step    microseconds per step of all that is neither LAMMPS nor the solver: dete
         energy, update; against the limit of 20 us + 120 ns per particle
 memory  bytes that the fix holds, per contact: per-grain arrays and room to grow included; against 200
 
-Sweeps are in processor time: that of a run times the solver's share of its wall time. Best is the run of least wall
-time, the one least disturbed; median is over the runs. Steps are in wall time; best and median are over all steps of
-all runs. On a busy machine most steps of many grains are interrupted, and only the best says something.
+Sweeps are in processor time, that of a run times the solver's share of its wall time; best and median are over the
+runs. Steps are in wall time; best and median are over all steps of all runs. On a busy machine most steps of many
+grains are interrupted, and only the best says something.
 
     python benchmarks/sweep_cost.py
     python benchmarks/sweep_cost.py --grains 500 10000
@@ -57,15 +57,15 @@ class Bed:
     repeats: int
 
 
-def run_steps(bed: Bed, **options: Any) -> tuple[NDArray[Any], float, float]:
+def run_steps(bed: Bed, **options: Any) -> tuple[NDArray[Any], float]:
     """Run the bed's steps from the settled state.
 
     Returns
     -------
     stats : structured array
         A row a step, without the first two.
-    wall, cpu : float
-        Seconds of the run and of the processor for it.
+    share : float
+        Processor seconds per wall second.
     """
     bed.state.put_back(bed.lmp)
     attached = nscd_lmp.attach(bed.lmp, tol=TOL, maxiter=20000, walls=bed.walls, unconverged="ignore", **options)
@@ -74,18 +74,18 @@ def run_steps(bed: Bed, **options: Any) -> tuple[NDArray[Any], float, float]:
     bed.lmp.command(f"run {bed.steps} post no")
     wall, cpu = time.perf_counter() - wall, time.thread_time() - cpu
     attached.detach()
-    return attached.stats[WARM_UP:], wall, cpu
+    return attached.stats[WARM_UP:], cpu / wall
 
 
 def sweep_rows(bed: Bed, record: Record) -> list[list[Any]]:
     """Measure all local laws; they take turns."""
-    costs: dict[str, list[tuple[float, float]]] = {solver: [] for solver in nscd_lmp.SOLVERS}
+    costs: dict[str, list[float]] = {solver: [] for solver in nscd_lmp.SOLVERS}
     seen: dict[str, NDArray[Any]] = {}
     for _ in range(bed.repeats):
         for solver, cost in costs.items():
-            stats, wall, cpu = run_steps(bed, solver=solver, law="gap", warmstart=False)
+            stats, share = run_steps(bed, solver=solver, law="gap", warmstart=False)
             visits = np.sum(stats["contacts"] * stats["iterations"])
-            cost.append((wall, 1e9 * cpu / wall * stats["seconds_solver"].sum() / visits))
+            cost.append(1e9 * share * stats["seconds_solver"].sum() / visits)
             seen[solver] = stats
     rows = []
     for solver, cost in costs.items():
@@ -93,8 +93,8 @@ def sweep_rows(bed: Bed, record: Record) -> list[list[Any]]:
         result = {
             "contacts": int(stats["contacts"].mean()),
             "iterations_per_step": float(stats["iterations"].mean()),
-            "sweep_ns_best": min(cost)[1],
-            "sweep_ns_median": float(np.median([nanoseconds for _, nanoseconds in cost])),
+            "sweep_ns_best": min(cost),
+            "sweep_ns_median": float(np.median(cost)),
         }
         parameters = {"law": "gap", "solver": solver, "warmstart": False}
         record.add(part="sweep", **_parameters(bed), **parameters, **result, sweep_ns_limit=SWEEP_LIMIT)

@@ -78,8 +78,8 @@ constexpr std::size_t streams = 8;
 NSCD_HOT void place_contacts(State &s)
 {
   const std::size_t n = s.touching.size(), length = (n + streams - 1) / streams;
-  s.contacts.resize(n);
-  s.infos.resize(n);
+  resize_closely(s.contacts, n);
+  resize_closely(s.infos, n);
   std::size_t k = 0;
   for (std::size_t place = 0; place < length; ++place)
     for (std::size_t listed = place; listed < n; listed += length, ++k) place_contact(s, k, s.touching[listed]);
@@ -113,8 +113,8 @@ std::size_t promote_near(State &state)
   std::size_t kept = 0;
   for (const Candidate near : state.near) {
     if (will_overlap(state, near)) {
-      state.contacts.emplace_back();
-      state.infos.emplace_back();
+      resize_closely(state.contacts, state.contacts.size() + 1);
+      resize_closely(state.infos, state.infos.size() + 1);
       place_contact(state, state.contacts.size() - 1, near);
     } else {
       state.near[kept++] = near;

@@ -1,7 +1,7 @@
 // Everything one step works on: the arrays it was handed, and its own, kept from step to step.
 #pragma once
 
-#include "aligned.hpp"
+#include "storage.hpp"
 #include "contact.hpp"
 #include "settings.hpp"
 #include "views.hpp"

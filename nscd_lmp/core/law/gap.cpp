@@ -85,7 +85,7 @@ bool Gap::open_contact(const State &s, std::uint32_t k)
 NSCD_HOT void Gap::open_contacts(const State &s)
 {
   const std::size_t n = s.contacts.size();
-  suspects_.resize(n);
+  resize_closely(suspects_, n);
   std::size_t count = 0;
   for (std::size_t k = 0; k < n; ++k) {
     suspects_[count] = std::uint32_t(k);
