@@ -25,7 +25,7 @@ from box import box_walls
 from matplotlib.ticker import FormatStrFormatter, LogLocator, NullLocator
 from penetration import Penetration
 from record import Record, print_table
-from script import open_scene, run_script
+from script import ScriptRun, open_scene, run_script
 
 import nscd_lmp
 
@@ -42,8 +42,17 @@ ELASTIC_TOL = 1e-10  # what is left of the energy is then the law's doing, not t
 
 
 @dataclass(frozen=True)
+class Case:
+    """A way to run the sedimentation: its script and LAMMPS variables."""
+
+    method: str
+    script: str
+    variables: dict[str, Any]
+
+
+@dataclass(frozen=True)
 class Result:
-    """One run of the sedimentation."""
+    """What a case gave; iterations and steps above tol are None for penalty contacts."""
 
     method: str
     parameters: dict[str, Any]
@@ -55,33 +64,46 @@ class Result:
     unconverged_steps: int | None = None
 
 
-def rigid(law: str, dt: float, tol: float, repeats: int, scene: dict[str, Any]) -> Result:
-    """Run in.sedimentation; the largest overlap is that of every step, as fix nscd keeps it."""
-    variables = {"law": law, "dt": dt, "tol": tol, "warmstart": "yes", "unconverged": "ignore", **scene}
-    runs = [run_script("in.sedimentation", **variables) for _ in range(repeats)]
-    best = min(runs, key=lambda run: run.cpu_seconds)
-    return Result(
-        f"law {law}",
-        {"law": law, "dt": dt, "tol": tol},
-        int(best.totals["steps"]),
-        best.cpu_seconds,
-        best.wall_seconds,
-        best.totals["worst_overlap_ratio"],
-        best.iterations_per_step,
-        int(best.totals["unconverged_steps"]),
-    )
+def cases(quick: bool) -> list[Case]:
+    """Return all ways to run the sedimentation; the quick ones are few and small."""
+    scene = {"n": 60, "lx": 4e-3, "time": 0.01} if quick else {}
+    warm = {"warmstart": "yes", "unconverged": "ignore"}
+    rigid = [
+        Case(f"law {law}", "in.sedimentation", {"law": law, "dt": dt, "tol": tol, **warm, **scene})
+        for law, dt in RIGID
+        for tol in TOLERANCES
+    ]
+    penalty = [
+        Case(f"penalty kn = {kn:g} N/m", "in.sedimentation.granular", {"kn": kn, "dt": dt, **scene})
+        for kn, dt in (PENALTY[:1] if quick else PENALTY)
+    ]
+    return rigid + penalty
 
 
-def penalty(kn: float, dt: float, repeats: int, scene: dict[str, Any]) -> Result:
-    """Run the penalty twin, timed, and once more to look for its largest overlap after every step."""
-    variables = {"kn": kn, "dt": dt, **scene}
-    runs = [run_script("in.sedimentation.granular", **variables) for _ in range(repeats)]
-    best = min(runs, key=lambda run: run.cpu_seconds)
-    lmp = open_scene("in.sedimentation.granular", **variables)
-    steps = round(float(lmp.extract_variable("time")) / dt)
+def fastest_runs(given: Sequence[Case], repeats: int) -> list[ScriptRun]:
+    """Return the fastest run of each case; they take turns, so that a busy minute hits all of them."""
+    rounds = [[run_script(case.script, **case.variables) for case in given] for _ in range(repeats)]
+    return [min(runs, key=lambda run: run.cpu_seconds) for runs in zip(*rounds, strict=True)]
+
+
+def evaluate(case: Case, run: ScriptRun) -> Result:
+    """Return the result of a run. Penalty contacts are run once more, to look for overlaps after every step."""
+    if run.totals:
+        return Result(
+            case.method,
+            case.variables,
+            int(run.totals["steps"]),
+            run.cpu_seconds,
+            run.wall_seconds,
+            run.totals["worst_overlap_ratio"],  # of every step
+            run.iterations_per_step,
+            int(run.totals["unconverged_steps"]),
+        )
+    lmp = open_scene(case.script, **case.variables)
+    steps = round(float(lmp.extract_variable("time")) / case.variables["dt"])
     worst = _worst_overlap(lmp, steps)
     lmp.close()
-    return Result(f"penalty kn = {kn:g} N/m", {"kn": kn, "dt": dt}, steps, best.cpu_seconds, best.wall_seconds, worst)
+    return Result(case.method, case.variables, steps, run.cpu_seconds, run.wall_seconds, worst)
 
 
 def _worst_overlap(lmp: Any, steps: int) -> float:
@@ -98,9 +120,8 @@ def _worst_overlap(lmp: Any, steps: int) -> float:
 
 def sedimentation(repeats: int, quick: bool, record: Record) -> list[Result]:
     """Run, print and record the sedimentation."""
-    scene = {"n": 60, "lx": 4e-3, "time": 0.01} if quick else {}
-    results = [rigid(law, dt, tol, repeats, scene) for law, dt in RIGID for tol in TOLERANCES]
-    results += [penalty(kn, dt, repeats, scene) for kn, dt in (PENALTY[:1] if quick else PENALTY)]
+    given = cases(quick)
+    results = [evaluate(case, run) for case, run in zip(given, fastest_runs(given, repeats), strict=True)]
     rows = []
     for result in results:
         row = {
@@ -194,7 +215,7 @@ def main(words: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--parts", nargs="+", choices=["sedimentation", "balls"], default=["sedimentation", "balls"])
     parser.add_argument("--output", type=Path, default=Path("output/benchmarks"), help="folder [%(default)s]")
-    parser.add_argument("--repeats", type=int, default=3, help="runs of each [%(default)s]")
+    parser.add_argument("--repeats", type=int, default=5, help="runs of each [%(default)s]")
     parser.add_argument("--quick", action="store_true", help="small scenes, only to see that everything runs")
     given = parser.parse_args(words)
     repeats = 1 if given.quick else given.repeats

@@ -72,7 +72,7 @@ double ListGuard::farthest_moved(const State &s) const
 void ListGuard::require_reach(const State &s, const PairList &pairs, double ahead, double speed) const
 {
   if (pairs.reach < 0)
-    fail("contacts would be missed: pair cutoff plus neighbor skin are ", -pairs.reach, " less than the largest diameter: "
+    fail("contacts could be missed: pair cutoff plus neighbor skin are ", -pairs.reach, " less than the largest diameter: "
          "raise the cutoff of the pair style to the largest diameter plus 2 dt v of the fastest grain (", 2 * ahead,
          " now)");
   const double moved = farthest_moved(s), nearer = 2 * (moved + ahead);
