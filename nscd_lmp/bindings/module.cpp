@@ -175,5 +175,6 @@ NB_MODULE(_core, m)
   m.def("solvers", &solver_table, "Solvers in legend order: name, title, parameter, default (multiple of 1/W_nn).");
   m.def("laws", &law_table, "Contact laws: name, title.");
   m.attr("REPORT_COLUMNS") = names(nscd::report_column_names);
+  m.attr("TOTALS_COLUMNS") = names(nscd::totals_column_names);
   m.attr("CONTACT_COLUMNS") = names(nscd::contact_column_names);
 }

@@ -10,22 +10,12 @@ from rich.console import Console, RenderableType
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
+from nscd_lmp import _core
 from nscd_lmp.plugin_path import plugin_folder
 
 SECONDS_BETWEEN_LINES = 10.0
 
 
-# over all steps of all fixes nscd of this process
-TOTALS = (
-    "steps",
-    "seconds_contacts",
-    "seconds_solver",
-    "worst_overlap",
-    "worst_overlap_ratio",
-    "iterations",
-    "unconverged_steps",
-    "dissipated_energy",
-)
 # of the run that is on, or the last one
 RUN = ("first_step", "last_step", "step", "time", "step_contacts", "step_iterations")
 
@@ -37,7 +27,7 @@ class Counts(ctypes.Structure):
     serve here: a second thread could meet a fix, or all of LAMMPS, as ``unfix`` or ``clear`` takes it apart.
     """
 
-    _fields_ = tuple((name, ctypes.c_double) for name in (*TOTALS, *RUN))
+    _fields_ = tuple((name, ctypes.c_double) for name in (*_core.TOTALS_COLUMNS, *RUN))
 
 
 def zeroed_counts() -> Counts:

@@ -53,18 +53,12 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
 
   nscd::Settings settings;
   or_stop(error, id, [&] {
-    parse(settings, narg, arg);
+    nscd::parse_keywords(settings, {arg + 3, arg + narg});
     step_ = std::make_unique<nscd::Step>(settings);
   });
 }
 
 FixNscd::~FixNscd() = default;
-
-void FixNscd::parse(nscd::Settings &settings, int narg, char **arg)
-{
-  std::vector<std::string> words(arg + 3, arg + narg);
-  nscd::parse_keywords(settings, words);
-}
 
 int FixNscd::setmask() { return FINAL_INTEGRATE | POST_RUN; }
 

@@ -25,7 +25,6 @@ class FixNscd : public Fix {
   double memory_usage() override;
 
  private:
-  void parse(nscd::Settings &settings, int narg, char **arg);
   void check_atoms();
   void check_integrators();
   void measure_list_reach();
