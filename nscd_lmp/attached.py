@@ -31,7 +31,8 @@ class Attached:
         Columns: `step`, the columns of ``fix nscd``'s vector (``contacts``, ``iterations``, ``criterion`` (42) and its
         parts ``motion``, ``bipotential``, ``penetration`` in m/s, ``relative_residual``, ``largest_overlap`` in m,
         ``dissipated_energy`` in J since the run began, ``largest_overlap_ratio`` over the smaller radius,
-        ``unconverged_steps`` since the run began), ``seconds_contacts`` and ``seconds_solver``.
+        ``unconverged_steps`` and ``energy_limited_steps`` since the run began), ``seconds_contacts`` and
+        ``seconds_solver``.
         """
         return np.frombuffer(self._fix.stats_bytes(), dtype=STATS_DTYPE)
 
@@ -40,10 +41,11 @@ class Attached:
         """Return the contacts of the last step as arrays of length n.
 
         Keys: ``tag_i``, ``tag_j`` (a wall w is -1 - w), the contact point ``x``, ``y``, ``z`` (m), the unit normal
-        ``nx``, ``ny``, ``nz`` from j to i, ``gap`` (m, at the end of the step) and ``impulse`` (N s).
+        ``nx``, ``ny``, ``nz`` from j to i, ``gap`` (m, at the end of the step) and ``impulse`` (N s); with friction
+        also ``impulse_tx``, ``impulse_ty``, ``impulse_tz``, the tangential impulse on grain i.
         """
         rows = self._fix.contact_rows()
-        return {name: rows[:, column].copy() for column, name in enumerate(_core.CONTACT_COLUMNS)}
+        return {name: rows[:, column].copy() for column, name in enumerate(_core.CONTACT_COLUMNS[: rows.shape[1]])}
 
     @property
     def description(self) -> str:

@@ -1,6 +1,7 @@
 """The contact problem of one step, as a Python solver is handed it."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +10,9 @@ from numpy.typing import NDArray
 @dataclass(frozen=True)
 class ContactSystem:
     """Find impulses p with v = W p + velocity >= 0, p >= 0 and v p = 0 for every contact.
+
+    With friction p has normal components p_n and tangential ones p_t, for which Coulomb's law asks besides:
+    \\|p_t\\| <= friction p_n; slip = 0 where it is less; p_t against the slip where it is equal.
 
     Attributes
     ----------
@@ -21,10 +25,18 @@ class ContactSystem:
         At detection; negative when overlapping.
     bias : (n,) float, m/s
         What the contact law adds to the relative velocity (restitution, gap/dt); contained in `velocity`.
-    start : (n,) float, N s
-        Impulses of the warm start, 0 without.
+    start : (n,) or (n, d) float, N s
+        Impulses of the warm start, 0 without; with friction along N, T1[, T2].
     velocity : (n,) float, m/s
         Normal relative velocity without impulses, plus bias.
+    friction : (n,) float or None
+        Coulomb's coefficient, infinite for contacts that stick. None, as the rest, in a frictionless scene.
+    tangents : (n, d - 1, 3) float or None
+        Unit vectors T1[, T2]; with the normal a right-handed frame.
+    slip : (n, d - 1) float or None, m/s
+        Tangential relative velocity of the contact points without impulses, plus bias.
+    spin_response : float or None
+        m r^2 / I: 5/2 for spheres, 2 for discs.
     """
 
     body_i: NDArray[np.int32]
@@ -35,18 +47,44 @@ class ContactSystem:
     bias: NDArray[np.float64]
     start: NDArray[np.float64]
     velocity: NDArray[np.float64]
+    friction: NDArray[np.float64] | None = None
+    tangents: NDArray[np.float64] | None = None
+    slip: NDArray[np.float64] | None = None
+    spin_response: float | None = None
+
+    @classmethod
+    def of_core(cls, arrays: dict[str, Any]) -> "ContactSystem":
+        """Return the system from the arrays that the compiled core hands out."""
+        if "tangents" in arrays:
+            arrays["tangents"] = arrays["tangents"].reshape(len(arrays["gap"]), -1, 3)
+        return cls(**arrays)
 
     def __len__(self) -> int:
         """Return the number of contacts."""
         return len(self.gap)
 
+    @property
+    def dimension(self) -> int:
+        """Return the unknowns per contact: 1 without friction, 2 in a planar scene, 3 in space."""
+        return 1 if self.slip is None else 1 + self.slip.shape[1]
+
     def delassus(self) -> NDArray[np.float64]:
-        """Return the dense (n, n) Delassus matrix W = H^T M^-1 H of the normal directions, 1/kg."""
+        """Return the dense (n d, n d) Delassus matrix W = H^T M^-1 H, 1/kg.
+
+        Contact by contact, along N, T1[, T2]. Without friction d = 1.
+        """
+        n, d = len(self), self.dimension
         bodies = len(self.inverse_mass)
-        h = np.zeros((3 * bodies, len(self)))
-        columns = np.arange(len(self))
+        directions = self.normal[:, None, :]
+        if self.tangents is not None:
+            directions = np.concatenate([directions, self.tangents], axis=1)
+        h = np.zeros((2, 3, bodies, n, d))  # velocity and surface velocity r omega
+        turned = np.cross(self.normal[:, None, :], directions)
         for body, sign in ((self.body_i, 1.0), (self.body_j, -1.0)):
-            moves = body >= 0
-            for d in range(3):
-                h[3 * body[moves] + d, columns[moves]] += sign * self.normal[moves, d]
-        return h.T @ (np.repeat(self.inverse_mass, 3)[:, None] * h)
+            moves = np.flatnonzero(body >= 0)
+            h[0][:, body[moves], moves] += sign * directions[moves].transpose(2, 0, 1)
+            h[1][:, body[moves], moves] -= turned[moves].transpose(2, 0, 1)
+        response = np.array([1.0, self.spin_response or 0.0])
+        weight = response[:, None, None] * self.inverse_mass
+        columns = h.reshape(2, 3, bodies, n * d)
+        return np.einsum("abik,abi,abil->kl", columns, np.broadcast_to(weight, (2, 3, bodies)), columns, optimize=True)

@@ -49,6 +49,8 @@ def attach(
     solver: str | PythonSolver = "pdas",
     law: str = "gap",
     restitution: float = 0.0,
+    friction: float | Literal["stick"] = 0.0,
+    e_t: float = 0.0,
     tol: float = 1e-7,
     maxiter: int = 1000,
     warmstart: bool = True,
@@ -57,6 +59,7 @@ def attach(
     gamma: float | None = None,
     theta: float = 0.5,
     recovery: float = 0.2,
+    inertia: Literal["sphere", "disc"] | None = None,
     unconverged: Literal["ignore", "warn", "error"] = "warn",
     door: Literal["external", "invoke"] = "external",
 ) -> Attached:
@@ -72,12 +75,17 @@ def attach(
     group : str
         Atoms to move; the others are obstacles of infinite mass.
     solver : str or callable
-        A name of :data:`nscd_lmp.SOLVERS`, or a function that takes a :class:`ContactSystem` and returns one
-        impulse (N s) per contact, a float64 array of shape (n,).
+        A name of :data:`nscd_lmp.SOLVERS`, or a function that takes a :class:`ContactSystem` and returns the
+        impulses (N s), a float64 array of shape (n,), with friction (n, 2) in a planar scene and (n, 3) in space.
     law : str
         A name of :data:`nscd_lmp.LAWS`.
     restitution : float
         Newton's coefficient e, 0 to 1.
+    friction : float or "stick"
+        Coulomb's coefficient of pairs, and of walls without their own. 0: no spins, omega is left alone.
+        ``"stick"``: no slip while in contact.
+    e_t : float
+        Tangential restitution, 0 to 1.
     tol : float
         A step is solved when the criterion (42) of Barboteu & Dumont (2017), in m/s, is below it.
     maxiter : int
@@ -91,6 +99,9 @@ def attach(
         Of ``law moreau``.
     recovery : float
         Of ``law gap``: share of an overlap given back per step.
+    inertia : str, optional
+        Moment of inertia of a grain, ``"sphere"`` (2/5 m r^2) or ``"disc"`` (1/2 m r^2, in dimension 2). None: disc
+        in dimension 2, sphere otherwise.
     unconverged : str
         What to do about steps that did not reach `tol`: ``"ignore"``, ``"warn"`` at the end of a run, or
         ``"error"``.
@@ -113,15 +124,14 @@ def attach(
     """
     keywords = _keywords(
         law=law, restitution=restitution, tol=tol, maxiter=maxiter, warmstart=warmstart, rho=rho, gamma=gamma,
-        theta=theta, recovery=recovery, unconverged=unconverged,
+        theta=theta, recovery=recovery, unconverged=unconverged, inertia=inertia,
     )  # fmt: skip
+    keywords += ["friction", friction if isinstance(friction, str) else repr(float(friction))]
+    if e_t:
+        keywords += ["e_t", repr(float(e_t))]
     custom = None
     if callable(solver):
-        function = solver
-
-        def custom(system: dict[str, Any]) -> NDArray[np.float64]:
-            return np.ascontiguousarray(function(ContactSystem(**system)), dtype=np.float64)
-
+        custom = _with_contact_system(solver)
     else:
         keywords += ["solver", solver]
     for wall in walls:
@@ -139,6 +149,22 @@ def _keywords(**values: Any) -> list[str]:
             value = "yes" if value else "no"
         words += [keyword, value if isinstance(value, str) else repr(value)]
     return words
+
+
+def _with_contact_system(solver: PythonSolver) -> Callable[[dict[str, Any]], NDArray[np.float64]]:
+    """Return the solver as the core calls it: arrays in a dictionary in, impulses one after another out."""
+
+    def custom(arrays: dict[str, Any]) -> NDArray[np.float64]:
+        system = ContactSystem.of_core(arrays)
+        impulses = np.ascontiguousarray(solver(system), dtype=np.float64)
+        if impulses.ndim != system.start.ndim:
+            raise _core.NscdError(
+                f"the Python solver returned an array of shape {impulses.shape} for {len(system)} contacts:"
+                f" it must be {system.start.shape}"
+            )
+        return impulses.reshape(-1)
+
+    return custom
 
 
 class _Door:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 
 @dataclass(frozen=True)
@@ -14,10 +15,13 @@ class Plane:
         Any point of the plane, in LAMMPS' length unit.
     normal : three floats
         Towards the grains; any length but zero.
+    friction : float or "stick", optional
+        Coulomb's coefficient of this wall; None for that of the pairs. ``"stick"``: no slip while in contact.
     """
 
     point: Sequence[float]
     normal: Sequence[float]
+    friction: float | Literal["stick"] | None = None
 
     def __post_init__(self) -> None:
         for name in ("point", "normal"):
@@ -26,4 +30,7 @@ class Plane:
 
     def keywords(self) -> list[str]:
         """Return the words of ``fix nscd`` for this wall."""
-        return ["wall", "plane", *(repr(float(value)) for value in (*self.point, *self.normal))]
+        words = ["wall", "plane", *(repr(float(value)) for value in (*self.point, *self.normal))]
+        if self.friction is not None:
+            words += ["friction", self.friction if isinstance(self.friction, str) else repr(float(self.friction))]
+        return words

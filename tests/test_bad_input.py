@@ -67,10 +67,10 @@ def test_value_out_of_range_is_refused_at_once(start, door, options, message):
 
 def test_keyword_that_does_not_exist_is_refused(start):
     lmp = start(two_balls(), 1e-4)
-    with pytest.raises(Exception, match=r"unknown keyword 'friction': choose one of .*restitution.*wall"):
-        lmp.command("fix nscd all nscd friction 0.3")
-    with pytest.raises(TypeError, match="friction"):
-        nscd_lmp.attach(lmp, friction=0.3)
+    with pytest.raises(Exception, match=r"unknown keyword 'cohesion': choose one of .*restitution.*wall"):
+        lmp.command("fix nscd all nscd cohesion 0.3")
+    with pytest.raises(TypeError, match="cohesion"):
+        nscd_lmp.attach(lmp, cohesion=0.3)
 
 
 @pytest.mark.parametrize(

@@ -47,7 +47,7 @@ void ExternalFix::begin_run(int first_call)
   require_last();
   find_list();
   // A list that the setup built is as old as the run; grains stay where they are until the first step.
-  step_.begin_run(setting("neigh_ago") <= first_call);
+  step_.begin_run(setting("neigh_ago") <= first_call, setting("dimension"));
 }
 
 void ExternalFix::advance()
@@ -62,6 +62,8 @@ int ExternalFix::setting(const char *name) const { return library_.extract_setti
 void ExternalFix::require_atoms() const
 {
   if (setting("radius_flag") != 1) fail("atoms have no radius: use atom_style sphere");
+  if (step_.settings().frictional() && setting("omega_flag") != 1)
+    fail("friction turns grains, but atoms have no angular velocity: use atom_style sphere, or leave friction out");
   if (setting("tagint") != 4) fail("this LAMMPS was built with 64-bit atom IDs; nscd needs 32-bit ones");
   if (setting("world_size") != 1)
     fail("nscd runs on one MPI rank, this run has ", setting("world_size"), ": start LAMMPS on one rank");
@@ -96,6 +98,10 @@ Grains ExternalFix::grains()
   g.x = *library_.per_atom<double *>("x");
   g.v = *library_.per_atom<double *>("v");
   g.f = *library_.per_atom<double *>("f");
+  if (step_.settings().frictional()) {
+    g.omega = *library_.per_atom<double *>("omega");
+    g.torque = *library_.per_atom<double *>("torque");
+  }
   g.radius = library_.per_atom<double>("radius");
   g.tag = library_.per_atom<std::int32_t>("id");
   g.mask = library_.per_atom<int>("mask");

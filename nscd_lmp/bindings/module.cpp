@@ -1,5 +1,6 @@
 // nscd_lmp._core: the core for Python.
 #include "../core/error.hpp"
+#include "../core/slides.hpp"
 #include "external_fix.hpp"
 
 #include <nanobind/nanobind.h>
@@ -32,36 +33,65 @@ nb::ndarray<nb::numpy, T> make_array(std::size_t count, std::size_t columns, Val
 
 int body_index(const State &s, int body) { return body < s.grains.owned && s.bodies[body][3] > 0 ? body : -1; }
 
-// The problem as a Python solver sees it; the names are those of nscd_lmp.ContactSystem.
-nb::dict contact_system(const State &s, const nscd::ContactView &view)
+// What friction adds to the contact system.
+void add_friction(nb::dict &d, const State &s, std::size_t n)
 {
-  const auto n = view.contacts.size();
-  const auto &contacts = view.contacts;
+  const int unknowns = nscd::unknowns(s.friction.model), directions = unknowns - 1;
+  std::vector<nscd::Vec4> tangents(n * directions), slips(n);
+  std::vector<double> mu(n);
+  nscd::with_friction(s.friction.model, [&]<class M>(M) {
+    for (std::size_t k = 0; k < n; ++k) {
+      const nscd::Contact &c = s.contacts[k];
+      const auto &slide = s.friction.slides<M>()[k];
+      const auto pair = nscd::tangents(c.normal, s.friction.model);
+      tangents[k * directions] = pair.first;
+      if (directions == 2) tangents[k * directions + 1] = pair.second;
+      const auto slip = nscd::velocity<M>(c, s.bodies.data(), s.friction.spins.data()).t + bias(slide);
+      slips[k] = M::in_space(c.normal, slip);
+      mu[k] = slide.mu;
+    }
+  });
+  d["friction"] = make_array<double>(n, 0, [&](auto k, auto) { return mu[k]; });
+  d["spin_response"] = s.friction.spin_response;
+  d["tangents"] = make_array<double>(n, 3 * directions,
+                                     [&](auto k, auto c) { return tangents[k * directions + c / 3][c % 3]; });
+  d["slip"] = make_array<double>(
+      n, directions, [&](auto k, auto c) { return nscd::dot(tangents[k * directions + c], slips[k]); });
+}
+
+// The problem as a Python solver sees it; the names are those of nscd_lmp.ContactSystem.
+nb::dict contact_system(const State &s, std::size_t n, std::span<const double> start)
+{
+  const auto &contacts = s.contacts;
   const auto *bodies = s.bodies.data();
   nb::dict d;
   d["body_i"] = make_array<int>(n, 0, [&](auto k, auto) { return body_index(s, contacts[k].i); });
   d["body_j"] = make_array<int>(n, 0, [&](auto k, auto) { return body_index(s, contacts[k].j); });
   d["inverse_mass"] = make_array<double>(s.grains.owned, 0, [&](auto i, auto) { return bodies[i][3]; });
   d["normal"] = make_array<double>(n, 3, [&](auto k, auto c) { return contacts[k].normal[c]; });
-  d["gap"] = make_array<double>(n, 0, [&](auto k, auto) { return view.infos[k].gap; });
+  d["gap"] = make_array<double>(n, 0, [&](auto k, auto) { return s.infos[k].gap; });
   d["bias"] = make_array<double>(n, 0, [&](auto k, auto) { return contacts[k].bias; });
-  d["start"] = make_array<double>(n, 0, [&](auto k, auto) { return contacts[k].impulse; });
   d["velocity"] = make_array<double>(
       n, 0, [&](auto k, auto) { return nscd::normal_velocity(contacts[k], bodies) + contacts[k].bias; });
+  const std::size_t unknowns = nscd::unknowns(s.friction.model), columns = unknowns == 1 ? 0 : unknowns;
+  d["start"] = make_array<double>(n, columns, [&](auto k, auto c) { return start[k * unknowns + c]; });
+  if (unknowns > 1) add_friction(d, s, n);
   return d;
 }
 
-// Wraps a Python callable: it gets the contact system and returns one impulse a contact.
+// Wraps a Python callable: it gets the contact system and returns the impulses, contact by contact.
 nscd::Step::CustomSolver python_solver(nb::object solve)
 {
   if (solve.is_none()) return {};
-  return [solve](const State &state, const nscd::ContactView &view, std::span<double> impulses) {
+  return [solve](const State &state, std::size_t contacts, std::span<double> impulses) {
     nb::gil_scoped_acquire gil;
     using Impulses = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-    nb::object answer = solve(contact_system(state, view));
+    nb::object answer = solve(contact_system(state, contacts, impulses));
     const auto given = nb::cast<Impulses>(answer);
+    const int unknowns = nscd::unknowns(state.friction.model);
     if (given.shape(0) != impulses.size())
-      nscd::fail("the Python solver returned ", given.shape(0), " impulses for ", impulses.size(), " contacts");
+      nscd::fail("the Python solver returned ", given.shape(0), " impulses for ", contacts, " contacts",
+                 unknowns > 1 ? " of " + std::to_string(unknowns) + " unknowns" : "");
     std::copy_n(given.data(), impulses.size(), impulses.begin());
   };
 }
@@ -96,10 +126,10 @@ nb::bytes stats_bytes(const ExternalFix &fix)
 nb::ndarray<nb::numpy, double> contact_rows(const ExternalFix &fix)
 {
   const State &state = fix.step().state();
-  std::vector<double> rows(state.contacts.size() * nscd::contact_columns);
+  const std::size_t columns = nscd::contact_columns(state.settings);
+  std::vector<double> rows(state.contacts.size() * columns);
   nscd::fill_contact_rows(state, rows.data());
-  return make_array<double>(state.contacts.size(), nscd::contact_columns,
-                            [&](auto k, auto c) { return rows[k * nscd::contact_columns + c]; });
+  return make_array<double>(state.contacts.size(), columns, [&](auto k, auto c) { return rows[k * columns + c]; });
 }
 
 // Names and defaults of everything registered, for choice lists, tests and legends.
@@ -112,6 +142,7 @@ nb::list solver_table()
     row["title"] = std::string(s.title);
     row["parameter"] = std::string(s.parameter);
     row["default"] = s.default_parameter;
+    row["default_with_friction"] = s.default_with_friction;
     table.append(row);
   }
   return table;

@@ -2,16 +2,18 @@
 //
 //   eps_glob = 1/N_c sum_c [ eps_motion + eps_bc + eps_pen ]
 //   eps_motion = |v~ - v~_m|   the local solver's own velocity against the one that the bodies have
-//   eps_bc     = |v~ p|        the bipotential, 0 iff Signorini's law holds
-//   eps_pen    = -min(0, v~)   penetration
+//   eps_bc     = |v~ . p + mu p_n |u_t||   the bipotential, 0 iff Signorini's and Coulomb's laws hold
+//   eps_pen    = -min(0, v~_n) penetration
 //
-// Deviation: (28) has the indicator of p >= 0 inside the bipotential, infinite for a tensile impulse. EBP,
+// Deviation: (28) has the indicator of p in K_mu inside the bipotential, infinite for a tensile impulse. EBP,
 // EAL and PDAS (gamma != 1) can pass through p < 0 with v~ = 0, which (42) as printed would accept; the
-// indicator enters eps_bc as the velocity W~_nn |min(0, p)| instead.
+// indicator enters eps_bc as the velocity W~_nn |min(0, p)| instead. With friction, eps_bc also takes the residual of
+// Coulomb's law in velocities, W_tt |p_t - proj(p_t - u_t/W_tt, B(0, mu p_n))|: the bipotential of small grains is too
+// small a number to see that they slip where they should stick, and it is infinite for stick.
 //
 // (42) adds m/s and N m, so it means nothing across scales. Reported beside it is the natural map used in
 // the FCLIB comparisons (Acary, Bremond, Huber 2018), in velocities:
-//   relative = || W_nn (p - max(0, p - v/W_nn)) ||_2 / || v_free ||_2.
+//   relative = || W_nn (p - max(0, p - v/W_nn)),  W_tt (p_t - proj(...)) ||_2 / || v_free ||_2.
 #pragma once
 
 #include "problem.hpp"
@@ -26,7 +28,8 @@ struct Criterion {
   double total() const { return motion + bipotential + penetration; }
 };
 
-// `local_velocity`: the (1 + e) v~ that a local solver carries, one a contact, or nullptr if it carries none.
+// `local_velocity`: the (1 + e) v~ that a local solver carries, one a contact (as load_carried in nlgs.hpp reads it),
+// or nullptr if it carries none.
 Criterion measure(const Problem &problem, const double *local_velocity = nullptr);
 
 }    // namespace nscd

@@ -1,9 +1,11 @@
 // Warm start: the impulses of the last step, found again by the contact's key (the pair's tags).
-// An open-addressing table of 16 B entries, refilled each step without allocating.
+// An open-addressing table, refilled each step without allocating. Entry: what a contact's impulse is, with a
+// `std::uint64_t key` that is 0 for a free place.
 #pragma once
 
 #include "contact.hpp"
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -12,13 +14,63 @@ namespace nscd {
 // How many contacts ahead a loop asks for an entry.
 constexpr std::size_t prefetch_distance = 12;
 
+struct NormalImpulse {
+  std::uint64_t key = 0;
+  double normal = 0;  // N s
+};
+
+// With friction in the plane: the tangent (-n_y, n_x) turns with the normal and brings the impulse along. Seen from the
+// other grain both tangent and impulse change sign, so the number stays.
+struct PlanarImpulse {
+  std::uint64_t key = 0;
+  double normal = 0;
+  double tangential = 0;
+};
+
+// With friction in space the normal that the tangential impulse was perpendicular to is needed. One cache line.
+struct SpatialImpulse {
+  std::uint64_t key = 0;
+  double normal = 0;
+  double tangential[3] = {};
+  double direction[3] = {};
+};
+
+template <class Entry>
 class ImpulseMemory {
  public:
-  // Forgets everything but these contacts' impulses.
-  void remember(std::span<const Contact> contacts, std::span<const ContactInfo> infos);
-  // The remembered impulse, N s, or 0 for a contact that was not there.
-  double recall(std::uint64_t key) const;
-  void forget();
+  // Forgets everything but these contacts: entry(k) is what contact k is remembered by.
+  template <class EntryOf>
+  void remember(std::span<const ContactInfo> infos, EntryOf entry)
+  {
+    grow(infos.size());
+    forget();
+    const std::size_t last = table_.size() - 1;
+    for (std::size_t k = 0; k < infos.size(); ++k) {
+      if (k + prefetch_distance < infos.size()) prefetch(infos[k + prefetch_distance].key);
+      std::size_t s = slot(infos[k].key);
+      while (table_[s].key != 0) s = (s + 1) & last;
+      table_[s] = entry(k);
+    }
+    used_ = infos.size();
+  }
+
+  // What the contact was remembered by, or null for one that was not there.
+  const Entry *recall(std::uint64_t key) const
+  {
+    if (used_ == 0) return nullptr;
+    const std::size_t last = table_.size() - 1;
+    for (std::size_t s = slot(key); table_[s].key != 0; s = (s + 1) & last)
+      if (table_[s].key == key) return &table_[s];
+    return nullptr;
+  }
+
+  void forget()
+  {
+    if (used_ == 0) return;
+    std::fill(table_.begin(), table_.end(), Entry{});
+    used_ = 0;
+  }
+
   // Looks ahead: the entry of this key will be asked for soon. Large tables do not fit the cache.
   void prefetch(std::uint64_t key) const
   {
@@ -26,12 +78,18 @@ class ImpulseMemory {
   }
 
  private:
-  struct Entry {
-    std::uint64_t key;  // 0: free
-    double impulse;
-  };
   std::size_t slot(std::uint64_t key) const { return (key * 0x9E3779B97F4A7C15ull) >> shift_; }
-  void grow(std::size_t contacts);
+
+  // Power of two, at most two thirds full, so that a look-up of an absent key ends soon.
+  void grow(std::size_t contacts)
+  {
+    int bits = 6;
+    while (2 * (std::size_t(1) << bits) < 3 * contacts) ++bits;
+    const std::size_t size = std::size_t(1) << bits;
+    if (size <= table_.size()) return;
+    table_.resize(size);
+    shift_ = 64 - bits;
+  }
 
   std::vector<Entry> table_;
   int shift_ = 64;

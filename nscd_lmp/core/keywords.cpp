@@ -15,6 +15,13 @@ class Words {
  public:
   explicit Words(const std::vector<std::string> &words) : words_(words) {}
   bool done() const { return next_ == words_.size(); }
+  // Takes the next word if it is this one.
+  bool skip(const std::string &word)
+  {
+    const bool there = !done() && words_[next_] == word;
+    next_ += there;
+    return there;
+  }
   const std::string &keyword() { return keyword_ = words_[next_++]; }
 
   const std::string &word()
@@ -48,6 +55,17 @@ class Words {
   std::string keyword_;
 };
 
+double read_friction(Words &words) { return words.skip("stick") ? stick : words.number<double>(); }
+
+Inertia read_inertia(Words &words)
+{
+  const std::string &word = words.word();
+  if (word == "sphere") return Inertia::sphere;
+  if (word == "disc") return Inertia::disc;
+  fail("unknown inertia '", word, "': choose one of sphere, disc");
+}
+
+// A friction right behind a wall is the wall's own.
 Plane read_wall(Words &words)
 {
   const std::string &kind = words.word();
@@ -55,6 +73,8 @@ Plane read_wall(Words &words)
   Plane plane{};
   for (double &value : plane.point) value = words.number<double>();
   for (double &value : plane.normal) value = words.number<double>();
+  if (words.skip("friction")) plane.friction = read_friction(words);
+  else if (words.skip("stick")) plane.friction = stick;
   return plane;
 }
 
@@ -66,6 +86,10 @@ const std::map<std::string, Reader> &readers()
       {"solver", [](Settings &s, Words &w) { s.solver = w.word(); }},
       {"law", [](Settings &s, Words &w) { s.law = w.word(); }},
       {"restitution", [](Settings &s, Words &w) { s.restitution = w.number<double>(); }},
+      {"friction", [](Settings &s, Words &w) { s.friction = read_friction(w); }},
+      {"stick", [](Settings &s, Words &) { s.friction = stick; }},
+      {"e_t", [](Settings &s, Words &w) { s.e_t = w.number<double>(); }},
+      {"inertia", [](Settings &s, Words &w) { s.inertia = read_inertia(w); }},
       {"tol", [](Settings &s, Words &w) { s.tol = w.number<double>(); }},
       {"maxiter", [](Settings &s, Words &w) { s.maxiter = w.number<int>(); }},
       {"warmstart", [](Settings &s, Words &w) { s.warmstart = w.yes_or_no(); }},

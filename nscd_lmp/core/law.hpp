@@ -28,6 +28,8 @@ class Law {
   virtual void set_bias(State &, std::size_t first) = 0;
   // The restitution that the biases contain, for the criterion's v~ = v / (1 + e).
   virtual double restitution_in_bias(const Settings &) const { return 0; }
+  // The same of the tangential biases, which are e_t times the tangential velocity at the start of the step.
+  virtual double tangential_restitution_in_bias(const Settings &) const { return 0; }
   // Fills state.displacement, from where contacts were sought to q_{k+1}; bodies have v_{k+1}.
   virtual void displace(State &) = 0;
 };

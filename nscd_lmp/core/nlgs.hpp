@@ -1,9 +1,10 @@
 // Nonlinear Gauss-Seidel (section 3.2): sweep over the contacts, solve each with the others held, until the
-// criterion is met. The local law is a template argument, so each law gets its own inlined loop.
+// criterion is met. The local law is a template argument, so each law gets its own inlined loop; so is the model, so
+// a frictionless sweep knows nothing of friction.
 //
 // Makes exact: the motion (bodies always carry the impulses of the contacts). Fails by stalling: the sweeps
 // needed grow with the length of force chains (about 0.93 N^2 a decade on a column of N) and with the mass
-// ratio of a heavy body on a light one.
+// ratio of a heavy body on a light one. With friction the problem is not convex and no proof of convergence is known.
 //
 // Source: Jean & Moreau (1992), Jean (1999). Deviation: no relaxation.
 #pragma once
@@ -13,6 +14,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 
 namespace nscd {
 
@@ -22,7 +24,21 @@ struct Local {
   double velocity;
 };
 
-// One sweep. Returns the sum over the contacts of the velocity that each visit corrected, m/s.
+// The same under friction: impulse, and the velocity of laws that carry it.
+template <class Tangent>
+struct FrictionalLocal {
+  Split<Tangent> p = {};
+  Split<Tangent> v = {};
+};
+
+// The contact's own part of its problem: the inverse of its block of W, and Coulomb's coefficient, infinite for stick.
+struct OwnBlock {
+  double w_inverse;   // 1 / W_nn, kg
+  double wt_inverse;  // 1 / W_tt, kg
+  double mu;
+};
+
+// One frictionless sweep. Returns the sum over the contacts of the velocity that each visit corrected, m/s.
 template <class Law>
 NSCD_HOT double sweep(Problem &problem, [[maybe_unused]] double *carried, double parameter)
 {
@@ -47,29 +63,102 @@ NSCD_HOT double sweep(Problem &problem, [[maybe_unused]] double *carried, double
   return corrected;
 }
 
+// Carried velocities under friction lie one after another in the workspace, which knows only doubles.
+template <class Tangent>
+constexpr std::size_t carried_doubles = sizeof(Tangent) / sizeof(double) + 1;
+
+template <class Tangent>
+NSCD_INLINE Split<Tangent> load_carried(const double *at)
+{
+  Split<Tangent> v;
+  v.n = *at;
+  std::memcpy(&v.t, at + 1, sizeof(Tangent));
+  return v;
+}
+
+template <class Tangent>
+NSCD_INLINE void store_carried(double *at, const Split<Tangent> &v)
+{
+  *at = v.n;
+  std::memcpy(at + 1, &v.t, sizeof(Tangent));
+}
+
+// One sweep with friction; M is Planar or Spatial.
+template <class Law, class M>
+NSCD_HOT double sweep(Problem &problem, [[maybe_unused]] double *carried, double parameter)
+{
+  using Tangent = typename M::Tangent;
+  Body *const bodies = problem.bodies.data();
+  Vec4 *const spins = problem.sliding.spins;
+  Contact *const contacts = problem.contacts.data();
+  auto *const slides = problem.sliding.template slides<M>();
+  const double response = problem.sliding.spin_response, tangential_share = 1 / (1 + response);
+  const std::size_t n = problem.contacts.size();
+  double corrected = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    Contact &c = contacts[k];
+    auto &slide = slides[k];
+    const Body bi = bodies[c.i], bj = bodies[c.j];
+    const Tangent si = M::spin(spins[c.i]), sj = M::spin(spins[c.j]);
+    const Vec4 difference = bi - bj;
+    const double vn = dot(c.normal, difference);
+    const Split<Tangent> v{vn + c.bias, M::slip(c.normal, difference, vn, si + sj) + bias(slide)};
+    FrictionalLocal<Tangent> local{{c.impulse, slide.impulse}, {}};
+    if constexpr (Law::carries_velocity) local.v = load_carried<Tangent>(carried + k * carried_doubles<Tangent>);
+    local = Law::visit(local, v, OwnBlock{c.w_inverse, c.w_inverse * tangential_share, slide.mu}, parameter);
+    if constexpr (Law::carries_velocity) store_carried<Tangent>(carried + k * carried_doubles<Tangent>, local.v);
+    const double dp = local.p.n - c.impulse;
+    const Tangent dpt = local.p.t - slide.impulse;
+    c.impulse = local.p.n;
+    slide.impulse = local.p.t;
+    const Vec4 push = c.normal * dp + M::in_space(c.normal, dpt);
+    const Tangent turn = M::turned(c.normal, dpt) * response;
+    bodies[c.i] = bi + push * bi[3];
+    bodies[c.j] = bj - push * bj[3];
+    M::set_spin(spins[c.i], si - turn * bi[3]);
+    M::set_spin(spins[c.j], sj - turn * bj[3]);
+    corrected += (std::abs(dp) + length(dpt) * (1 + response)) * (bi[3] + bj[3]);
+  }
+  return corrected;
+}
+
 // The criterion costs a pass of its own, so far from convergence it is not taken: (42) is bounded by about
 // what the last sweep corrected. Close to it the passes are spread so that the count overshoots by < 2 %.
-template <class Law>
-SolverReport nlgs(Problem &problem, const SolverOptions &options)
+template <class Sweep>
+SolverReport iterate(Problem &problem, const SolverOptions &options, std::size_t carried_a_contact, Sweep once)
 {
   constexpr int always_checked = 4;
   SolverReport report;
   const std::size_t n = problem.contacts.size();
   if (n == 0) return report;
-  if (Law::carries_velocity) problem.workspace.assign(n, 0.0);
-  double *const velocity = Law::carries_velocity ? problem.workspace.data() : nullptr;
+  problem.workspace.assign(n * carried_a_contact, 0.0);
+  double *const carried = carried_a_contact ? problem.workspace.data() : nullptr;
   int next_check = 0;
   report.converged = false;
   for (int s = 1; s <= options.maxiter && !report.converged; ++s) {
-    const double corrected = sweep<Law>(problem, velocity, options.parameter);
+    const double corrected = once(problem, carried, options.parameter);
     report.iterations = s;
     const bool close = !(corrected > 4 * options.tol * double(n)) && s >= next_check;
     if (s > always_checked && !close && s < options.maxiter) continue;
-    report.criterion = measure(problem, velocity);
+    report.criterion = measure(problem, carried);
     report.converged = report.criterion.total() < options.tol;
     next_check = s + 1 + s / 64;
   }
   return report;
+}
+
+template <class Law>
+SolverReport nlgs(Problem &problem, const SolverOptions &options)
+{
+  constexpr bool carries = Law::carries_velocity;
+  switch (problem.sliding.model) {
+    case Model::planar:
+      return iterate(problem, options, carries ? carried_doubles<double> : 0, &sweep<Law, Planar>);
+    case Model::spatial:
+      return iterate(problem, options, carries ? carried_doubles<Vec4> : 0, &sweep<Law, Spatial>);
+    case Model::frictionless: break;
+  }
+  return iterate(problem, options, carries, &sweep<Law>);
 }
 
 }    // namespace nscd

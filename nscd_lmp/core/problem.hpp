@@ -2,6 +2,7 @@
 #pragma once
 
 #include "contact.hpp"
+#include "friction.hpp"
 
 #include <span>
 #include <vector>
@@ -14,6 +15,7 @@ struct Problem {
   double restitution = 0;       // e of (21); scales v to v~ = v / (1 + e) in the criterion
   double free_norm = 0;         // ||v_free + bias||_2 over the contacts, the scale of the relative residual, m/s
   std::vector<double> &workspace;  // the solver's own unknowns; kept between steps, so a steady step allocates nothing
+  Sliding sliding{};            // tangential impulses and spins, as bodies and contacts; nothing for a frictionless scene
 };
 
 }    // namespace nscd

@@ -1,5 +1,7 @@
 #include "report.hpp"
 
+#include "slides.hpp"
+
 #include <sstream>
 
 namespace nscd {
@@ -18,13 +20,20 @@ double report_column(const StepReport &r, int column)
     case 8: return r.dissipated;
     case 9: return r.largest_overlap_ratio;
     case 10: return double(r.unconverged);
+    case 11: return double(r.energy_limited);
   }
   return 0;
 }
 
+int contact_columns(const Settings &settings)
+{
+  return int(contact_column_names.size()) - (settings.frictional() ? 0 : 3);
+}
+
 void fill_contact_rows(const State &s, double *row)
 {
-  for (std::size_t k = 0; k < s.contacts.size(); ++k, row += contact_columns) {
+  const int columns = contact_columns(s.settings);
+  for (std::size_t k = 0; k < s.contacts.size(); ++k, row += columns) {
     const Contact &c = s.contacts[k];
     const ContactInfo &info = s.infos[k];
     const Sphere &a = s.spheres[info.atom_i];
@@ -38,6 +47,9 @@ void fill_contact_rows(const State &s, double *row)
     }
     row[8] = info.gap;
     row[9] = c.impulse;
+    if (s.friction.model == Model::frictionless) continue;
+    const Vec4 tangential = tangential_impulse(s, k);
+    for (int d = 0; d < 3; ++d) row[10 + d] = tangential[d];
   }
 }
 
@@ -49,16 +61,42 @@ static std::string describe_solver(const Settings &s)
   return text.str();
 }
 
+static std::string coefficient(double mu)
+{
+  if (mu == stick) return "stick";
+  std::ostringstream text;
+  text << mu;
+  return text.str();
+}
+
+static std::string describe_model(const Settings &s, const Friction &friction)
+{
+  if (friction.model == Model::frictionless) return "frictionless: 1 unknown per contact, no spins";
+  std::string text = "friction " + coefficient(s.friction);
+  for (std::size_t k = 0; k < s.walls.size(); ++k)
+    if (s.walls[k].friction) text += ", " + coefficient(*s.walls[k].friction) + " on wall " + std::to_string(k + 1);
+  text += friction.model == Model::planar ? "; planar: 2 unknowns per contact, spins about z"
+                                          : "; spatial: 3 unknowns per contact, spins";
+  return text + (friction.spin_response == disc_spin_response ? " of discs" : " of spheres");
+}
+
+static std::string describe_restitution(const Settings &s)
+{
+  if (s.restitution == 0 && s.e_t == 0) return "no restitution term";
+  std::ostringstream text;
+  text << "impacts with restitution " << s.restitution;
+  if (s.frictional()) text << ", tangential " << s.e_t;
+  return text.str();
+}
+
 std::string describe(const Step &step)
 {
   const Settings &s = step.settings();
   std::ostringstream text;
   text << "law " << s.law << ", " << (step.has_custom_solver() ? "a solver handed in" : describe_solver(s)) << ", tol "
        << s.tol << ", " << s.walls.size() << (s.walls.size() == 1 ? " wall" : " walls")
-       << "; frictionless: 1 unknown per contact, no spins; ";
-  if (s.restitution > 0) text << "impacts with restitution " << s.restitution;
-  else text << "no restitution term";
-  text << "; one rank: no exchange";
+       << "; " << describe_model(s, step.state().friction) << "; " << describe_restitution(s)
+       << "; one rank: no exchange";
   return text.str();
 }
 

@@ -11,9 +11,10 @@
 namespace nscd {
 
 // f_ID[1..] of fix nscd; the first columns of .stats.
-constexpr std::array<std::string_view, 11> report_column_names{
+constexpr std::array<std::string_view, 12> report_column_names{
     "contacts", "iterations", "criterion", "motion", "bipotential", "penetration",
-    "relative_residual", "largest_overlap", "dissipated_energy", "largest_overlap_ratio", "unconverged_steps"};
+    "relative_residual", "largest_overlap", "dissipated_energy", "largest_overlap_ratio", "unconverged_steps",
+    "energy_limited_steps"};
 constexpr int report_columns = int(report_column_names.size());
 double report_column(const StepReport &report, int column);
 
@@ -47,9 +48,10 @@ class BasicTotals {
 using Totals = BasicTotals<double>;
 
 // Rows of `dump local`: a wall contact has -1 - wall (walls count from 0) as its second tag.
-constexpr std::array<std::string_view, 10> contact_column_names{"tag_i", "tag_j", "x", "y", "z",
-                                                                "nx", "ny", "nz", "gap", "impulse"};
-constexpr int contact_columns = int(contact_column_names.size());
+constexpr std::array<std::string_view, 13> contact_column_names{
+    "tag_i", "tag_j", "x", "y", "z", "nx", "ny", "nz", "gap", "impulse", "impulse_tx", "impulse_ty", "impulse_tz"};
+// The tangential impulse is there with friction only.
+int contact_columns(const Settings &settings);
 
 // Writes contacts x contact_columns doubles: the contacts of the step at q_{k+1}, m and N s.
 void fill_contact_rows(const State &state, double *rows);

@@ -4,6 +4,7 @@
 #include "law.hpp"
 #include "solver.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace nscd {
@@ -33,7 +34,8 @@ static void require_range(const char *what, double value, double lo, double hi)
 
 double solver_parameter(const Settings &s, const SolverEntry &solver)
 {
-  return (solver.parameter == "rho" ? s.rho : s.gamma).value_or(solver.default_parameter);
+  const double usual = s.frictional() ? solver.default_with_friction : solver.default_parameter;
+  return (solver.parameter == "rho" ? s.rho : s.gamma).value_or(usual);
 }
 
 static void check_parameter(const char *keyword, std::optional<double> value, const SolverEntry &solver)
@@ -43,6 +45,28 @@ static void check_parameter(const char *keyword, std::optional<double> value, co
     fail(keyword, " = ", *value, " must be > 0: it is a multiple of 1/W_nn, and the default is a good start");
   if (solver.parameter != keyword)
     fail("keyword ", keyword, " is not a parameter of solver ", solver.name, ", which takes ", solver.parameter);
+}
+
+bool Settings::frictional() const
+{
+  return friction > 0 || std::any_of(walls.begin(), walls.end(), [](const Plane &w) { return w.friction > 0.0; });
+}
+
+static void check_coefficient(const std::string &whose, double mu)
+{
+  if (!(mu >= 0))
+    fail(whose, "friction = ", mu, " must be >= 0, or `stick` for contacts that do not slip");
+}
+
+static void check_friction(const Settings &s)
+{
+  check_coefficient("", s.friction);
+  for (std::size_t k = 0; k < s.walls.size(); ++k)
+    check_coefficient("wall " + std::to_string(k + 1) + ": ", s.wall_friction(k));
+  require_range("e_t", s.e_t, 0, 1);
+  if (s.frictional()) return;
+  if (s.e_t > 0) fail("e_t = ", s.e_t, " has no effect without friction: give `friction`, or leave e_t out");
+  if (s.inertia) fail("inertia has no effect without friction: grains do not spin; give `friction`, or leave inertia out");
 }
 
 static void normalise(Plane &wall, std::size_t index)
@@ -62,6 +86,7 @@ Settings checked(Settings s)
   const SolverEntry &solver = find_solver(s.solver);
   find_law(s.law);
   require_range("restitution", s.restitution, 0, 1);
+  check_friction(s);
   require_range("theta", s.theta, 0, 1);
   require_range("recovery", s.recovery, 0, 1);
   if (!(s.tol > 0 && std::isfinite(s.tol)))

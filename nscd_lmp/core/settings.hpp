@@ -1,6 +1,7 @@
 // What the user chooses, and the checks on it: one place for both doors.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,7 +12,14 @@ namespace nscd {
 struct Plane {
   double point[3];
   double normal[3];
+  std::optional<double> friction{};  // its own coefficient; none: that of the pairs
 };
+
+// Moment of inertia: 2/5 m r^2 of a sphere, 1/2 m r^2 of a disc.
+enum class Inertia { sphere, disc };
+
+// Friction coefficient of contacts that do not slip.
+constexpr double stick = std::numeric_limits<double>::infinity();
 
 enum class Unconverged { ignore, warn, error };
 Unconverged parse_unconverged(const std::string &word);
@@ -21,6 +29,9 @@ struct Settings {
   std::string solver = "pdas";
   std::string law = "gap";
   double restitution = 0;        // Newton's e, 0..1
+  double friction = 0;           // Coulomb's mu of pairs, and of walls without their own; may be `stick`
+  double e_t = 0;                // tangential restitution, 0..1
+  std::optional<Inertia> inertia;  // none: disc in dimension 2, sphere otherwise
   double tol = 1e-7;             // on criterion (42)
   int maxiter = 1000;
   bool warmstart = true;
@@ -30,6 +41,10 @@ struct Settings {
   double recovery = 0.2;         // law gap: share of an overlap given back per step, speed-limited
   Unconverged unconverged = Unconverged::warn;
   std::vector<Plane> walls;
+
+  double wall_friction(std::size_t wall) const { return walls[wall].friction.value_or(friction); }
+  // Whether any contact has friction.
+  bool frictional() const;
 };
 
 // Reads `keyword value ...` as fix nscd takes them; raises Error for an unknown keyword or a value that is no number.

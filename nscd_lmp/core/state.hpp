@@ -3,6 +3,7 @@
 
 #include "storage.hpp"
 #include "contact.hpp"
+#include "friction.hpp"
 #include "settings.hpp"
 #include "views.hpp"
 
@@ -18,9 +19,32 @@ struct alignas(32) Sphere {
   double reach;
 };
 
+// What scenes with friction have beside bodies and contacts; empty otherwise.
+struct Friction {
+  Model model = Model::frictionless;
+  double spin_response = 0;                 // m r^2 / I
+  AlignedVector<Vec4> spins{};              // (bodies) surface velocity r omega, m/s; walls 0
+  AlignedVector<Planar::Slide> planar{};    // beside contacts, one of the two
+  AlignedVector<Spatial::Slide> spatial{};
+  AlignedVector<Vec4> impact_impulse{};     // beside contacts, tangential, N s, of impacts; or empty
+
+  template <class M>
+  auto &slides()
+  {
+    if constexpr (std::is_same_v<M, Planar>) return planar;
+    else return spatial;
+  }
+  template <class M>
+  const auto &slides() const
+  {
+    return const_cast<Friction *>(this)->slides<M>();
+  }
+};
+
 struct State {
   const Settings &settings;
   Grains grains;
+  int dimension = 3;
   double dt = 0;
 
   std::vector<Sphere> spheres{};         // (owned + ghosts)
@@ -30,6 +54,8 @@ struct State {
   std::vector<Contact> contacts{};
   std::vector<ContactInfo> infos{};      // beside contacts
   std::vector<double> impact_impulse{};  // beside contacts, N s, of impacts resolved ahead of them; or empty
+
+  Friction friction{};
 
   std::vector<Candidate> found{};        // listed pairs that are near enough to watch, the first found_count
   std::size_t found_count = 0;

@@ -3,6 +3,8 @@
 #include "detection.hpp"
 #include "error.hpp"
 #include "hot.hpp"
+#include "plane.hpp"
+#include "slides.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -28,10 +30,22 @@ Step::Step(const Settings &settings, CustomSolver custom) :
   options_.tol = settings_.tol;
   options_.maxiter = settings_.maxiter;
   options_.parameter = solver_parameter(settings_, *solver_);
+  choose_model(state_.dimension);
 }
 
-void Step::begin_run(bool list_just_built)
+void Step::choose_model(int dimension)
 {
+  const Inertia inertia = settings_.inertia.value_or(dimension == 2 ? Inertia::disc : Inertia::sphere);
+  state_.dimension = dimension;
+  state_.friction.model = nscd::choose_model(settings_, dimension);
+  state_.friction.spin_response = inertia == Inertia::disc ? disc_spin_response : sphere_spin_response;
+}
+
+void Step::begin_run(bool list_just_built, int dimension)
+{
+  if (dimension == 2) require_planar_walls(settings_);
+  else if (settings_.inertia == Inertia::disc) fail("inertia disc needs `dimension 2`: grains in space are spheres");
+  choose_model(dimension);
   report_ = {};
   if (list_just_built) list_.expect_new_list();
 }
@@ -42,8 +56,10 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
   if (!(dt > 0 && std::isfinite(dt))) fail("the timestep is ", dt, ": it must be > 0");
   state_.dt = dt;
   state_.grains = grains;
+  if (state_.dimension == 2) require_planar(state_);
   list_.inspect(state_, pairs);
   gather();
+  if (state_.friction.model != Model::frictionless) gather_spins(state_);
   const double speed = std::sqrt(largest_speed2_);
   list_.require_reach(state_, pairs, longest_move(speed), speed);
   detect(state_, pairs);
@@ -113,11 +129,12 @@ void Step::place_images()
   }
 }
 
-// ||v + bias||_2 over the contacts, with the bodies as they are, m/s.
-double Step::free_norm(std::span<const Contact> contacts) const
+// ||v + bias||_2 over the contacts [first, last), with the bodies as they are, m/s.
+double Step::free_norm(std::size_t first, std::size_t last) const
 {
-  double norm = 0;
-  for (const Contact &c : contacts) {
+  double norm = slip_norm2(state_, first, last);
+  for (std::size_t k = first; k < last; ++k) {
+    const Contact &c = state_.contacts[k];
     const double v = normal_velocity(c, state_.bodies.data()) + c.bias;
     norm += v * v;
   }
@@ -128,42 +145,41 @@ double Step::free_norm(std::span<const Contact> contacts) const
 NSCD_HOT void Step::start_contacts(std::size_t first)
 {
   law_->set_bias(state_, first);
-  const auto added = std::span(state_.contacts).subspan(first);
-  free_norm_ = std::hypot(first == 0 ? 0 : free_norm_, free_norm(added));
-  if (!settings_.warmstart) return;
-  const auto &infos = state_.infos;
-  for (std::size_t k = first; k < state_.contacts.size(); ++k) {
-    if (k + prefetch_distance < infos.size()) memory_.prefetch(infos[k + prefetch_distance].key);
-    Contact &c = state_.contacts[k];
-    c.impulse = memory_.recall(infos[k].key);
-    apply_impulse(c, c.impulse, state_.bodies.data());
-  }
+  set_tangential_bias(state_, first, law_->tangential_restitution_in_bias(settings_));
+  free_norm_ = std::hypot(first == 0 ? 0 : free_norm_, free_norm(first, state_.contacts.size()));
+  if (settings_.warmstart) memory_.recall(state_, first);
 }
 
 // A custom solver is shown the bodies without the impulses that it is to find.
-void Step::ask_custom(std::span<Contact> contacts, std::span<const ContactInfo> infos)
+void Step::ask_custom(std::size_t count)
 {
-  workspace_.resize(contacts.size());
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
-    workspace_[k] = contacts[k].impulse;
-    apply_impulse(contacts[k], -contacts[k].impulse, state_.bodies.data());
-  }
-  if (!contacts.empty()) custom_(state_, {contacts, infos}, workspace_);
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
-    if (!std::isfinite(workspace_[k])) fail("the solver handed in returned an impulse that is not a finite number");
-    contacts[k].impulse = workspace_[k];
-    apply_impulse(contacts[k], contacts[k].impulse, state_.bodies.data());
-  }
+  const std::size_t width = unknowns(state_.friction.model);
+  workspace_.assign(count * width, 0.0);
+  for (std::size_t k = 0; k < count; ++k) read_impulse(state_, k, &workspace_[k * width]);
+  for (std::size_t k = 0; k < count; ++k) remove_impulse(state_, k);
+  if (count > 0) custom_(state_, count, workspace_);
+  for (const double impulse : workspace_)
+    if (!std::isfinite(impulse)) fail("the solver handed in returned an impulse that is not a finite number");
+  for (std::size_t k = 0; k < count; ++k) write_impulse(state_, k, &workspace_[k * width]);
 }
 
-void Step::solve_part(std::span<Contact> contacts, std::span<const ContactInfo> infos, double restitution,
-                      double norm)
+// Where Newton's law of impact could make energy, the solution is kept from it.
+void Step::solve_within_energy(const Part &part, EnergyLimit::From from)
+{
+  if (can_make_energy(settings_) && (part.e > 0 || part.e_t > 0))
+    energy_limited_ |= energy_limit_.solve(state_, part.contacts, from, [&] { solve_part(part); });
+  else
+    solve_part(part);
+}
+
+void Step::solve_part(const Part &part)
 {
   const auto start = Clock::now();
-  Problem problem{state_.bodies, contacts, restitution, norm, workspace_};
+  const std::span contacts = std::span(state_.contacts).first(part.contacts);
+  Problem problem{state_.bodies, contacts, part.e, part.norm, workspace_, sliding(state_, part.e_t)};
   SolverReport solved;
   if (custom_) {
-    ask_custom(contacts, infos);
+    ask_custom(part.contacts);
     solved.iterations = 1;
     solved.criterion = measure(problem);
     solved.converged = solved.criterion.total() < settings_.tol;
@@ -186,30 +202,51 @@ void Step::solve()
   report_.iterations = 0;
   report_.seconds_solver = 0;
   report_.converged = true;
+  energy_limited_ = false;
   state_.impact_impulse.clear();
+  state_.friction.impact_impulse.clear();
+  place_slides(state_, 0);
   std::size_t first = 0;
   const bool impacts_first = law_->resolves_impacts(settings_);
-  if (impacts_first) free_bodies_ = state_.bodies;
+  if (impacts_first) {
+    free_bodies_ = state_.bodies;
+    free_spins_ = state_.friction.spins;
+  }
   do {
     if (impacts_first) {
       resolve_impacts_first(first > 0);
       first = 0;
     }
     start_contacts(first);
-    solve_part(state_.contacts, state_.infos, law_->restitution_in_bias(settings_), free_norm_);
+    solve_within_energy({state_.contacts.size(), law_->restitution_in_bias(settings_),
+                         law_->tangential_restitution_in_bias(settings_), free_norm_}, EnergyLimit::From::step);
     law_->displace(state_);
     first = state_.contacts.size();
-  } while (promote_near(state_) > 0);
+  } while (promote());
   report_.contacts = int(state_.contacts.size());
+  report_.energy_limited += energy_limited_;
   judge();
+}
+
+// Whether watched pairs have become contacts.
+bool Step::promote()
+{
+  const std::size_t before = state_.contacts.size();
+  if (promote_near(state_) == 0) return false;
+  place_slides(state_, before);
+  return true;
 }
 
 void Step::resolve_impacts_first(bool again)
 {
-  if (again) state_.bodies = free_bodies_;
+  if (again) {
+    state_.bodies = free_bodies_;
+    state_.friction.spins = free_spins_;
+    place_slides(state_, 0);
+  }
   for (Contact &c : state_.contacts) c.impulse = 0;
-  law_->impacts(state_, [this](std::span<Contact> contacts, std::span<const ContactInfo> infos, double restitution) {
-    solve_part(contacts, infos, restitution, free_norm(contacts));
+  law_->impacts(state_, [this](std::size_t count) {
+    solve_within_energy({count, settings_.restitution, settings_.e_t, free_norm(0, count)}, EnergyLimit::From::solve);
   });
 }
 
@@ -225,16 +262,17 @@ void Step::judge()
 // Warm start remembers what lasts, the contacts' impulses; what the step reports has the impacts' too.
 void Step::finish()
 {
-  if (settings_.warmstart) memory_.remember(state_.contacts, state_.infos);
+  if (settings_.warmstart) memory_.remember(state_);
   for (std::size_t k = 0; k < state_.impact_impulse.size(); ++k) state_.contacts[k].impulse += state_.impact_impulse[k];
+  add_slide_impulses(state_, state_.friction.impact_impulse);
   tally_contacts();
 }
 
-// Overlap at q_{k+1}, and the energy the contacts took: -sum p (v_n^k + v_n^{k+1}) / 2, exact for any step.
+// Overlap at q_{k+1}, and the energy the contacts took: -sum p (u^k + u^{k+1}) / 2, exact for any step.
 NSCD_HOT void Step::tally_contacts()
 {
   const State &s = state_;
-  double overlap = 0, ratio = 0, work = 0;
+  double overlap = 0, ratio = 0, work = tangential_work(s);
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
     const Contact &c = s.contacts[k];
     ContactInfo &info = state_.infos[k];
@@ -277,6 +315,7 @@ void Step::write_back(const PairList &pairs)
     }
     fastest2 = std::max(fastest2, b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
   }
+  if (state_.friction.model != Model::frictionless) write_back_spins(state_);
   const double next = longest_move(std::sqrt(fastest2) + state_.smooth_kick);
   wants_rebuild_ = list_.too_old(state_, pairs, next);
 }

@@ -1,11 +1,12 @@
 // One step of the scheme: arrays in, contacts, solver, arrays out. Both doors call this and nothing beneath it.
 #pragma once
 
-#include "impulse_memory.hpp"
+#include "energy_limit.hpp"
 #include "law.hpp"
 #include "list_guard.hpp"
 #include "solver.hpp"
 #include "state.hpp"
+#include "warm_start.hpp"
 
 #include <functional>
 #include <memory>
@@ -23,29 +24,26 @@ struct StepReport {
   double dissipated_in_step = 0;     // J, by contacts
   double dissipated = 0;             // J, by contacts since begin_run
   long unconverged = 0;              // steps since begin_run
+  long energy_limited = 0;           // steps since begin_run in which restitution had to be reduced
   bool converged = true;
   double seconds_contacts = 0;       // detection, biases, update
   double seconds_solver = 0;
 };
 
-// The contacts of one solve: all of the step's, or those of a round of impacts.
-struct ContactView {
-  std::span<const Contact> contacts;
-  std::span<const ContactInfo> infos;
-};
-
 class Step {
  public:
-  // Takes the place of the built-in solver: reads the problem, overwrites the start impulses (N s, a contact each).
-  using CustomSolver = std::function<void(const State &, const ContactView &, std::span<double>)>;
+  // Takes the place of the built-in solver: reads the first `contacts` contacts (all of the step's, or those of a round of
+  // impacts), overwrites their start impulses (N s; per contact N, or N, T1[, T2] along tangents()).
+  using CustomSolver = std::function<void(const State &, std::size_t contacts, std::span<double>)>;
 
   // Raises Error for bad settings.
   explicit Step(const Settings &settings, CustomSolver custom = {});
   Step(const Step &) = delete;
   Step &operator=(const Step &) = delete;
 
-  // Energy and unconverged steps count from here. `list_just_built`: the first step starts from its positions.
-  void begin_run(bool list_just_built);
+  // Energy and unconverged steps count from here, and the model is chosen. `list_just_built`: the first step starts from
+  // its positions. `dimension`: 3, or 2 for grains in a plane z = const. Raises Error if the settings do not fit it.
+  void begin_run(bool list_just_built, int dimension = 3);
 
   // One step of length dt (s). Raises Error and leaves the arrays as they were if the input is bad, a contact
   // can be missed, or the step does not converge under `unconverged error`.
@@ -68,11 +66,20 @@ class Step {
   double longest_move(double speed) const { return state_.dt * speed * (look_ahead_ + prediction_); }
   void start_contacts(std::size_t first);
   void solve();
+  bool promote();
   void resolve_impacts_first(bool again);
   void judge();
-  void solve_part(std::span<Contact> contacts, std::span<const ContactInfo> infos, double restitution, double norm);
-  void ask_custom(std::span<Contact> contacts, std::span<const ContactInfo> infos);
-  double free_norm(std::span<const Contact> contacts) const;
+  // One solve of a step.
+  struct Part {
+    std::size_t contacts;  // the first ones of the step
+    double e, e_t;         // restitution that the biases contain
+    double norm;           // of free velocities and biases
+  };
+  void solve_part(const Part &part);
+  void solve_within_energy(const Part &part, EnergyLimit::From from);
+  void ask_custom(std::size_t count);
+  double free_norm(std::size_t first, std::size_t last) const;
+  void choose_model(int dimension);
   void finish();
   void tally_contacts();
   void write_back(const PairList &pairs);
@@ -83,13 +90,16 @@ class Step {
   const std::unique_ptr<Law> law_;
   State state_;
   ListGuard list_;
-  ImpulseMemory memory_;
+  WarmStart memory_;
+  EnergyLimit energy_limit_;
   SolverOptions options_;
   std::vector<double> workspace_;
   StepReport report_;
   const double prediction_;        // contacts are sought at q_k + prediction dt v_k
   const double look_ahead_;        // and this times dt |v| around (0 or 1)
   AlignedVector<Body> free_bodies_;  // as gathered, where impacts may have to be resolved again
+  AlignedVector<Vec4> free_spins_;
+  bool energy_limited_ = false;    // in this step
   double free_norm_ = 0;           // of the step's contacts, m/s
   double largest_kick2_ = 0;       // (m/s)^2, of the smooth forces
   double largest_speed2_ = 0;      // (m/s)^2, before or after them

@@ -13,6 +13,8 @@ struct Grains {
   double *x = nullptr;             // (owned + ghosts, 3), in: q_k; out: q_{k+1} (owned only)
   double *v = nullptr;             // (owned, 3), in: v_k; out: v_{k+1}
   double *f = nullptr;             // (owned, 3), in: smooth forces; out: mean contact force of the step
+  double *omega = nullptr;         // (owned, 3), in: w_k, rad/s; out: w_{k+1}. With friction only, null otherwise
+  double *torque = nullptr;        // (owned, 3), in: smooth torques; out: mean contact torque. As omega
   const double *radius = nullptr;  // (owned + ghosts)
   const double *mass = nullptr;    // (owned)
   const std::int32_t *tag = nullptr;   // (owned + ghosts), unique per grain; an image has its grain's

@@ -47,7 +47,6 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
   size_array_rows = 1;
   size_array_cols = nscd::totals_columns;
   size_local_rows = 0;
-  size_local_cols = nscd::contact_columns;
   global_freq = local_freq = 1;
   extscalar = extvector = extarray = 0;
 
@@ -56,6 +55,7 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
     nscd::parse_keywords(settings, {arg + 3, arg + narg});
     step_ = std::make_unique<nscd::Step>(settings);
   });
+  size_local_cols = nscd::contact_columns(settings);
 }
 
 FixNscd::~FixNscd() = default;
@@ -66,6 +66,11 @@ void FixNscd::check_atoms()
 {
   if (!atom->radius_flag)
     error->all(FLERR, "Fix nscd {}: atoms have no radius: use atom_style sphere", id);
+  if (step_->settings().frictional() && !atom->omega_flag)
+    error->all(FLERR,
+               "Fix nscd {}: friction turns grains, but atoms have no angular velocity: use atom_style sphere, or leave "
+               "friction out",
+               id);
   if (!atom->tag_enable) error->all(FLERR, "Fix nscd {}: atoms have no IDs: use atom_modify id yes", id);
   if (comm->nprocs > 1)
     error->all(FLERR, "Fix nscd {} runs on one MPI rank, this run has {}: start LAMMPS on one rank", id,
@@ -110,7 +115,7 @@ void FixNscd::init()
 void FixNscd::setup(int /*vflag*/)
 {
   find_list();
-  step_->begin_run(neighbor->ago == 0);
+  or_stop(error, id, [&] { step_->begin_run(neighbor->ago == 0, domain->dimension); });
   steps_ = 0;
   nscd_progress.begin_run(update->beginstep, update->endstep, update->ntimestep);
   if (comm->me == 0)
@@ -140,6 +145,10 @@ nscd::Grains FixNscd::grains()
   g.x = atom->nlocal ? atom->x[0] : nullptr;
   g.v = atom->nlocal ? atom->v[0] : nullptr;
   g.f = atom->nlocal ? atom->f[0] : nullptr;
+  if (step_->settings().frictional() && atom->nlocal) {
+    g.omega = atom->omega[0];
+    g.torque = atom->torque ? atom->torque[0] : nullptr;
+  }
   g.radius = atom->radius;
   g.mass = atom->rmass;
   if (!atom->rmass) {
@@ -195,7 +204,7 @@ bool FixNscd::local_rows_wanted() const { return rows_every_step_ || output->nex
 void FixNscd::fill_local()
 {
   const int rows = step_->report().contacts;
-  constexpr int columns = nscd::contact_columns;
+  const int columns = size_local_cols;
   local_values_.resize(std::size_t(rows) * columns);
   nscd::fill_contact_rows(step_->state(), local_values_.data());
   local_rows_.resize(std::max(rows, 1));

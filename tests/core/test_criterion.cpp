@@ -8,7 +8,7 @@ using nscd::Body;
 using nscd::Contact;
 
 struct Hand {
-  std::vector<Body> bodies;
+  nscd::AlignedVector<Body> bodies;
   std::vector<Contact> contacts;
   std::vector<double> workspace;
 

@@ -173,7 +173,7 @@ TEST(contact_rows_show_the_contacts_at_the_end_of_the_step)
   scene.accelerate({0, 0, -10});
   Step step(settings("law gap tol 1e-12" + floor_wall));
   scene.advance(step, 0.01);
-  double rows[2][nscd::contact_columns];
+  double rows[2][10];
   CHECK(step.report().contacts == 2);
   if (step.report().contacts != 2) return;
   nscd::fill_contact_rows(step.state(), rows[0]);

@@ -4,20 +4,34 @@
 #include <vector>
 
 struct Remembered {
-  std::vector<nscd::Contact> contacts;
+  std::vector<double> impulses;
   std::vector<nscd::ContactInfo> infos;
   void add(std::uint64_t key, double impulse)
   {
-    contacts.push_back({nscd::Vec4{0, 0, 1, 0}, 0, 1, impulse, 0, 1});
+    impulses.push_back(impulse);
     infos.push_back({0, 0, key, 0, 1});
+  }
+};
+
+struct Memory : nscd::ImpulseMemory<nscd::NormalImpulse> {
+  void remember(const Remembered &r)
+  {
+    ImpulseMemory::remember(r.infos, [&](std::size_t k) {
+      return nscd::NormalImpulse{r.infos[k].key, r.impulses[k]};
+    });
+  }
+  double recall(std::uint64_t key) const
+  {
+    const auto *known = ImpulseMemory::recall(key);
+    return known ? known->normal : 0;
   }
 };
 
 TEST(an_empty_memory_recalls_nothing)
 {
-  nscd::ImpulseMemory memory;
+  Memory memory;
   CHECK(memory.recall(1) == 0);
-  memory.remember({}, {});
+  memory.remember({});
   CHECK(memory.recall(1) == 0);
   memory.forget();
   CHECK(memory.recall(1) == 0);
@@ -27,8 +41,8 @@ TEST(impulses_are_recalled_by_key_and_absent_keys_give_zero)
 {
   Remembered r;
   for (std::uint64_t k = 1; k <= 1000; ++k) r.add(k << 32 | (k + 7), double(k));
-  nscd::ImpulseMemory memory;
-  memory.remember(r.contacts, r.infos);
+  Memory memory;
+  memory.remember(r);
   for (std::uint64_t k = 1; k <= 1000; ++k) {
     CHECK(memory.recall(k << 32 | (k + 7)) == double(k));
     CHECK(memory.recall(k << 32 | (k + 8)) == 0);
@@ -41,8 +55,8 @@ TEST(colliding_keys_are_kept_apart)
   for (const std::uint64_t stride : {std::uint64_t(1), std::uint64_t(1) << 32, std::uint64_t(1) << 58}) {
     Remembered r;
     for (std::uint64_t k = 1; k <= 16; ++k) r.add(k * stride, double(k));
-    nscd::ImpulseMemory memory;
-    memory.remember(r.contacts, r.infos);
+    Memory memory;
+    memory.remember(r);
     for (std::uint64_t k = 1; k <= 16; ++k) CHECK(memory.recall(k * stride) == double(k));
     for (std::uint64_t k = 17; k <= 48; ++k) CHECK(memory.recall(k * stride + 1) == 0);
   }
@@ -56,8 +70,8 @@ TEST(a_probe_wraps_around_the_end_of_the_table)
   std::uint64_t key = 1;
   for (; r.infos.size() < 16; ++key)
     if (slot(key) == 63) r.add(key, double(key));
-  nscd::ImpulseMemory memory;
-  memory.remember(r.contacts, r.infos);
+  Memory memory;
+  memory.remember(r);
   for (const auto &info : r.infos) CHECK(memory.recall(info.key) == double(info.key));
   while (slot(key) != 63) ++key;
   CHECK(memory.recall(key) == 0);
@@ -65,11 +79,11 @@ TEST(a_probe_wraps_around_the_end_of_the_table)
 
 TEST(the_memory_grows_and_shrinks_with_the_contacts)
 {
-  nscd::ImpulseMemory memory;
+  Memory memory;
   for (const std::uint64_t n : {5u, 20000u, 3u, 40u, 100000u, 0u, 1u}) {
     Remembered r;
     for (std::uint64_t k = 1; k <= n; ++k) r.add(k + n, double(k));
-    memory.remember(r.contacts, r.infos);
+    memory.remember(r);
     for (std::uint64_t k = 1; k <= n; ++k) CHECK(memory.recall(k + n) == double(k));
     CHECK(memory.recall(n) == 0);
     CHECK(memory.recall(2 * n + 1) == 0);
@@ -81,14 +95,14 @@ TEST(forgetting_and_remembering_drop_what_was_there)
   Remembered first, second;
   first.add(11, 1.5);
   second.add(12, 2.5);
-  nscd::ImpulseMemory memory;
-  memory.remember(first.contacts, first.infos);
-  memory.remember(second.contacts, second.infos);
+  Memory memory;
+  memory.remember(first);
+  memory.remember(second);
   CHECK(memory.recall(11) == 0);
   CHECK(memory.recall(12) == 2.5);
   memory.forget();
   CHECK(memory.recall(12) == 0);
-  memory.remember(first.contacts, first.infos);
+  memory.remember(first);
   CHECK(memory.recall(11) == 1.5);
 }
 
@@ -97,8 +111,8 @@ TEST(zero_impulses_take_no_room_and_tensile_ones_are_kept)
   Remembered r;
   r.add(5, 0.0);
   r.add(6, -1.0);
-  nscd::ImpulseMemory memory;
-  memory.remember(r.contacts, r.infos);
+  Memory memory;
+  memory.remember(r);
   CHECK(memory.recall(5) == 0);
   CHECK(memory.recall(6) == -1.0);
 }

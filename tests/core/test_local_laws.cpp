@@ -11,7 +11,7 @@ constexpr double tol = 1e-7;
 
 // Bodies i and j meet along z; `bias` as Newton's impact law sets it: e times the approach velocity.
 struct OneContact {
-  std::vector<Body> bodies;
+  nscd::AlignedVector<Body> bodies;
   std::vector<Contact> contacts;
   std::vector<double> workspace;
   double e;
@@ -160,7 +160,7 @@ TEST(maxiter_bounds_the_iterations)
 
 TEST(no_contacts_are_solved_at_once)
 {
-  std::vector<Body> bodies(3);
+  nscd::AlignedVector<Body> bodies(3);
   std::vector<double> workspace;
   for (const auto &solver : nscd::solvers()) {
     nscd::Problem problem{bodies, {}, 0, 0, workspace};

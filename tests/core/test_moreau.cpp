@@ -155,10 +155,10 @@ TEST(a_custom_solver_is_handed_the_problem_and_its_impulses_are_used)
   Scene scene;
   scene.add({0, 0, 1}, 1, 2, {0, 0, -3});
   int calls = 0;
-  Step step(settings("law moreau wall plane 0 0 0 0 0 1"), [&](const nscd::State &state, const auto &view, auto p) {
+  Step step(settings("law moreau wall plane 0 0 0 0 0 1"), [&](const nscd::State &state, std::size_t n, auto p) {
     ++calls;
-    const auto &c = view.contacts[0];
-    CHECK(view.contacts.size() == 1 && view.infos.size() == 1 && p.size() == 1 && p[0] == 0);
+    const auto &c = state.contacts[0];
+    CHECK(n == 1 && state.infos.size() == 1 && p.size() == 1 && p[0] == 0);
     p[0] = -nscd::normal_velocity(c, state.bodies.data()) * c.w_inverse;
   });
   scene.advance(step, 0.01);

@@ -40,8 +40,8 @@ TEST(yes_and_no_are_spelled_as_in_lammps)
 
 TEST(malformed_keywords_are_refused_by_name)
 {
-  CHECK_ERROR(settings("friction 0.3"), "unknown keyword 'friction'");
-  CHECK_ERROR(settings("friction 0.3"), "restitution");  // the choices
+  CHECK_ERROR(settings("cohesion 0.3"), "unknown keyword 'cohesion'");
+  CHECK_ERROR(settings("cohesion 0.3"), "restitution");  // the choices
   CHECK_ERROR(settings("tol"), "keyword tol needs a value");
   CHECK_ERROR(settings("tol small"), "keyword tol: 'small' is not a number");
   CHECK_ERROR(settings("tol 1e-7x"), "'1e-7x' is not a number");

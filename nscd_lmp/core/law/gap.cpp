@@ -36,7 +36,10 @@ constexpr double tolerances = 10;     // single contacts miss the mean criterion
 class Gap final : public Law {
  public:
   bool looks_ahead() const override { return true; }
-  bool resolves_impacts(const Settings &settings) const override { return settings.restitution > 0; }
+  bool resolves_impacts(const Settings &settings) const override
+  {
+    return settings.restitution > 0 || settings.e_t > 0;
+  }
   void impacts(State &s, const SolvePart &solve) override { resolve_impacts(s, solve); }
   void set_bias(State &s, std::size_t first) override;
   void displace(State &s) override;

@@ -1,5 +1,7 @@
 #include "impacts.hpp"
 
+#include "../slides.hpp"
+
 #include <algorithm>
 #include <utility>
 
@@ -19,6 +21,29 @@ void smooth_half(State &s, double sign)
     const double scale = 0.5 * sign * s.dt * s.grains.force_to_acceleration * s.bodies[i][3];
     s.bodies[i] += Vec4{f[0], f[1], f[2], 0} * scale;
   }
+  if (s.friction.model != Model::frictionless) add_smooth_spins(s, 0.5 * sign);
+}
+
+void swap_contacts(State &s, std::size_t a, std::size_t b)
+{
+  std::swap(s.contacts[a], s.contacts[b]);
+  std::swap(s.infos[a], s.infos[b]);
+  if (!s.impact_impulse.empty()) std::swap(s.impact_impulse[a], s.impact_impulse[b]);
+  if (!s.friction.impact_impulse.empty()) std::swap(s.friction.impact_impulse[a], s.friction.impact_impulse[b]);
+  with_friction(s.friction.model, [&]<class M>(M) {
+    auto &slides = s.friction.slides<M>();
+    std::swap(slides[a], slides[b]);
+  });
+}
+
+// Biases of an impact: what is left of the velocity now, reversed.
+void bias_impact(State &s, std::size_t k, double u)
+{
+  s.contacts[k].bias = s.settings.restitution * u;
+  with_friction(s.friction.model, [&]<class M>(M) {
+    const auto slip = velocity<M>(s.contacts[k], s.bodies.data(), s.friction.spins.data()).t;
+    set_bias(s.friction.slides<M>()[k], slip * s.settings.e_t);
+  });
 }
 
 // Brings the contacts of S_m to the front and gives them their bias; returns how many. In place: copies of them would
@@ -30,10 +55,8 @@ std::size_t select_closing(State &s)
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
     const double u = normal_velocity(s.contacts[k], s.bodies.data());
     if (u >= -slow || std::max(s.infos[k].gap, 0.0) + s.dt * u >= 0) continue;
-    std::swap(s.contacts[k], s.contacts[closing]);
-    std::swap(s.infos[k], s.infos[closing]);
-    if (!s.impact_impulse.empty()) std::swap(s.impact_impulse[k], s.impact_impulse[closing]);
-    s.contacts[closing++].bias = s.settings.restitution * u;
+    swap_contacts(s, k, closing);
+    bias_impact(s, closing++, u);
   }
   return closing;
 }
@@ -42,6 +65,14 @@ void keep_impulses(State &s, std::size_t closing)
 {
   s.impact_impulse.resize(s.contacts.size(), 0.0);
   for (std::size_t k = 0; k < closing; ++k) s.impact_impulse[k] += std::exchange(s.contacts[k].impulse, 0.0);
+  with_friction(s.friction.model, [&]<class M>(M) {
+    auto &kept = s.friction.impact_impulse;
+    kept.resize(s.contacts.size(), Vec4{});
+    for (std::size_t k = 0; k < closing; ++k) {
+      const auto impulse = std::exchange(s.friction.slides<M>()[k].impulse, typename M::Tangent{});
+      kept[k] += M::in_space(s.contacts[k].normal, impulse);
+    }
+  });
 }
 
 }    // namespace
@@ -49,10 +80,11 @@ void keep_impulses(State &s, std::size_t closing)
 void resolve_impacts(State &s, const SolvePart &solve)
 {
   s.impact_impulse.clear();
+  s.friction.impact_impulse.clear();
   smooth_half(s, -1);
   std::size_t closing = select_closing(s);
   for (int round = 0; round < max_rounds && closing > 0; ++round) {
-    solve(std::span(s.contacts).first(closing), std::span(s.infos).first(closing), s.settings.restitution);
+    solve(closing);
     keep_impulses(s, closing);
     closing = select_closing(s);
   }

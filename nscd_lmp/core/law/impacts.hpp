@@ -6,6 +6,7 @@
 //
 //   S_m     = { contacts that close within the step: gap + dt u_m < 0, faster than resting contacts do }
 //   u_{m+1} >= -e u_m,  p >= 0,  complementary, on S_m                  until S_m is empty
+//   with friction: u_t,m+1 + e_t u_t,m and p_t obey Coulomb's law
 //
 // Half the smooth velocity change of the step acts before the rounds and half after. With the midpoint displacement
 // dt (v_k + v_{k+1}) / 2 this conserves the energy exactly for e = 1, in every round and in the smooth part.
@@ -21,8 +22,8 @@
 
 namespace nscd {
 
-// Solves for the impulses of these contacts, applies them to the bodies. Restitution scales the criterion.
-using SolvePart = std::function<void(std::span<Contact>, std::span<const ContactInfo>, double restitution)>;
+// Solves for the impulses of the first `count` contacts, whose biases are those of impacts, and applies them to the bodies.
+using SolvePart = std::function<void(std::size_t count)>;
 
 // Bodies: in, free velocities; out, the same plus what the impacts gave them. Contacts: in and out, no impulses; the
 // closing ones are brought to the front. state.impact_impulse: out, what the impacts took, or empty if there were none.

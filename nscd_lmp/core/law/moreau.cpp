@@ -3,6 +3,7 @@
 //   q_m     = q_k + (1 - theta) dt v_k                       (18), theta = 1/2
 //   S       = { contacts with gap(q_m) <= 0 }
 //   v~      = (v_n^{k+1} + e v_n^k) / (1 + e) >= 0,  p >= 0,  v~ p = 0        (21), (22)
+//   u~_t    = (u_t^{k+1} + e_t u_t^k) / (1 + e_t)  and p_t obey Coulomb's law        with friction
 //   q_{k+1} = q_m + theta dt v_{k+1}
 //
 // Makes exact: with theta = 1/2 the free flight, and with e = 1 also the energy, to round-off.
@@ -19,6 +20,8 @@ class Moreau final : public Law {
   double prediction(const Settings &settings) const override { return 1 - settings.theta; }
 
   double restitution_in_bias(const Settings &settings) const override { return settings.restitution; }
+
+  double tangential_restitution_in_bias(const Settings &settings) const override { return settings.e_t; }
 
   void set_bias(State &s, std::size_t first) override
   {

@@ -1,13 +1,15 @@
 // EAL: enhanced augmented Lagrangian, a Newton step a visit on the unknown chi = (p, v~)
 // (Barboteu & Dumont 2017, section 4.1, equation (26); Alart & Curnier 1991; Dumont 2013).
 //
-//   f~(chi) = ( v~ - v~_m(p) ;  p - proj(p - rho v~, R+ x B(0, mu p)) ),   df~/dchi Delta chi = -f~
-//   inside the half-cylinder (contact):  v~ <- 0,  p <- p - v~_m / W~_nn
-//   outside:                             p <- 0,   v~ <- velocity without this impulse
+//   f~(chi) = ( v~ - v~_m(p) ;  p - proj(tau, R+ x B(0, mu tau_n)) ),  tau = p - rho v~,   df~/dchi Delta chi = -f~
+//   outside the half-cylinder (open):    p <- 0,   v~ <- velocity without this impulse
+//   inside (stick):                      v~ <- 0,  p <- p - W~^-1 v~_m
+//   on its mantle (slip):                v_n <- 0,  p_t.t <- mu p_n, and a Newton step across t = tau_t/|tau_t|
+// The matrices A_c and B_c in three dimensions, and how these lines follow: docs/friction.md.
 //
 // Carried unknown, start and deviation as in EBP. Makes exact: the motion of the contact at each visit.
 // Fails: as EBP. Without friction the half-cylinder is EBP's half-line and the iterates are the same.
-#include "../nlgs.hpp"
+#include "newton_slip.hpp"
 
 namespace nscd {
 
@@ -19,8 +21,25 @@ struct Eal {
     if (inside) return {chi.impulse - v * w_inverse, 0.0};
     return {0.0, v - chi.impulse / w_inverse};
   }
+
+  template <class Tangent>
+  NSCD_INLINE static FrictionalLocal<Tangent> visit(const FrictionalLocal<Tangent> &chi, const Split<Tangent> &v,
+                                                    const OwnBlock &own, double rho)
+  {
+    const double step = rho * own.w_inverse, tau = chi.p.n - step * chi.v.n;
+    if (!(tau > 0)) return opened(chi, v, own);
+    const Tangent tau_t = chi.p.t - chi.v.t * step;
+    const double tangential = length(tau_t), radius = own.mu * tau;
+    if (tangential <= radius) return stuck(chi, v, own);
+    const Tangent t = tau_t * (1 / tangential);
+    const double normal = chi.p.n - v.n * own.w_inverse;
+    const Tangent change = step_across(t, chi.p.t, v.t, radius / tangential, rho, own);
+    const Tangent across = chi.p.t - t * inner(chi.p.t, t) + change;
+    const Tangent p_t = t * (own.mu * normal) + across;
+    return {{normal, p_t}, {0.0, v.t + (p_t - chi.p.t) * (1 / own.wt_inverse)}};
+  }
 };
 
-static const RegisterSolver eal({40, "eal", "EAL", "rho", 1.0, nlgs<Eal>});
+static const RegisterSolver eal({40, "eal", "EAL", "rho", 1.0, nlgs<Eal>, 0.25});
 
 }    // namespace nscd

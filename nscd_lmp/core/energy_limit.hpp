@@ -1,0 +1,41 @@
+// Keeps Newton's law of impact with friction from making energy.
+//
+// With e = e_t on all contacts the law takes energy, always (Leine & van de Wouw 2008): the impulses P and the velocities
+// u+ + e u- obey P.(u+ + e u-) <= 0. With e != e_t that bound is lost, and where one impact drives another contact the
+// energy may rise (Kane & Levinson 1985). The inelastic solution (e = e_t = 0) always takes energy. Both solutions lie in
+// the convex cone of friction, and so does every blend of the two; the work of the contacts is a quadratic function
+// of the share. So a solution that would make energy is blended with the inelastic one until it makes none.
+#pragma once
+
+#include "state.hpp"
+
+#include <functional>
+
+namespace nscd {
+
+class EnergyLimit {
+ public:
+  // Velocities that the work of the contacts is counted from: those at the start of the step, or of the solve.
+  enum class From { step, solve };
+
+  // Solves for the first `count` contacts, twice if need be. Returns whether the solution had to be blended.
+  bool solve(State &state, std::size_t count, From from, const std::function<void()> &solver);
+
+ private:
+  struct Motion {
+    AlignedVector<Body> bodies;
+    AlignedVector<Vec4> spins;
+    std::vector<double> normal;         // impulses, N s
+    AlignedVector<Vec4> tangential;
+  };
+  void store(const State &state, std::size_t count, Motion &motion) const;
+  void load(State &state, std::size_t count, const Motion &a, const Motion &b, double share_of_b) const;
+  double work(const State &state, std::size_t count, From from) const;
+
+  Motion before_, elastic_, inelastic_;
+};
+
+// Whether the settings let energy rise without this.
+inline bool can_make_energy(const Settings &s) { return s.frictional() && s.restitution != s.e_t; }
+
+}    // namespace nscd

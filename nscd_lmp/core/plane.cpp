@@ -1,0 +1,29 @@
+#include "plane.hpp"
+
+#include "error.hpp"
+
+namespace nscd {
+
+void require_planar_walls(const Settings &settings)
+{
+  for (std::size_t k = 0; k < settings.walls.size(); ++k)
+    if (settings.walls[k].normal[2] != 0)
+      fail("wall ", k + 1, ": its normal has a z component, but the scene is planar (dimension 2): make it 0, or use "
+           "dimension 3");
+}
+
+void require_planar(const State &s)
+{
+  const Grains &g = s.grains;
+  for (int i = 0; i < g.owned; ++i) {
+    const std::size_t z = 3 * std::size_t(i) + 2;
+    if (g.x[z] != g.x[2])
+      fail("grain ", g.tag[i], " is at z = ", g.x[z], ", off the plane z = ", g.x[2],
+           " of a planar scene (dimension 2): use `set group all z 0`, or dimension 3");
+    if ((g.mask[i] & g.group) && (g.v[z] != 0 || g.f[z] != 0))
+      fail("grain ", g.tag[i], " has a velocity ", g.v[z], " or force ", g.f[z],
+           " along z in a planar scene (dimension 2): add `fix ID all enforce2d`, or use dimension 3");
+  }
+}
+
+}    // namespace nscd

@@ -1,0 +1,66 @@
+// The tangential side of a step's contacts, over the whole state. Nothing here does anything in a frictionless scene.
+#pragma once
+
+#include "error.hpp"
+#include "problem.hpp"
+#include "spins.hpp"
+#include "state.hpp"
+
+#include <span>
+
+namespace nscd {
+
+// Frictionless, planar or spatial: what the settings and the dimension of the scene ask for.
+Model choose_model(const Settings &settings, int dimension);
+// Unknowns per contact: 1, 2 or 3.
+int unknowns(Model model);
+
+// Slides for the contacts from `first` on: coefficient of friction, no impulse, no bias.
+void place_slides(State &state, std::size_t first);
+
+// Biases e_t u_t of the contacts from `first` on, u_t at the start of the step.
+void set_tangential_bias(State &state, std::size_t first, double e_t);
+
+// Sum of (u_t + bias)^2 over the contacts [first, last), with the bodies as they are, (m/s)^2.
+double slip_norm2(const State &state, std::size_t first, std::size_t last);
+
+// Sum of p_t (u_t^k + u_t^{k+1}) over the contacts, J: twice what friction gives to the grains.
+double tangential_work(const State &state);
+
+// Tangential impulse on body i of contact k, N s.
+Vec4 tangential_impulse(const State &state, std::size_t k);
+
+// Adds tangential impulses, one a contact or none at all, to those of the contacts; the bodies have them already.
+void add_slide_impulses(State &state, std::span<const Vec4> impulses);
+
+// The impulse of contact k along N, T1[, T2] of tangents(): reads it; takes it from contact and bodies; gives it to a
+// contact that has none, and its bodies.
+void read_impulse(const State &state, std::size_t k, double *components);
+void remove_impulse(State &state, std::size_t k);
+void write_impulse(State &state, std::size_t k, const double *components);
+
+// What a solver sees; e_t is what the biases contain.
+Sliding sliding(State &state, double e_t);
+
+// Two unit vectors with which the normal makes a right-handed frame. In the plane the first is (-n_y, n_x).
+struct Tangents {
+  Vec4 first, second;
+};
+Tangents tangents(const Vec4 &normal, Model model);
+
+// Tangential velocity of contact k at the start of the step.
+template <class M>
+typename M::Tangent slip_at_start(const State &s, std::size_t k)
+{
+  const Contact &c = s.contacts[k];
+  Vec4 difference{}, spins{};
+  for (const int b : {c.i, c.j}) {
+    if (b >= s.grains.owned) continue;
+    const double *v = s.grains.v + 3 * std::size_t(b);
+    difference += Vec4{v[0], v[1], v[2], 0} * (b == c.i ? 1.0 : -1.0);
+    spins += start_spin(s, b);
+  }
+  return M::slip(c.normal, difference, dot(c.normal, difference), M::spin(spins));
+}
+
+}    // namespace nscd

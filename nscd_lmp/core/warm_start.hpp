@@ -1,0 +1,28 @@
+// Start impulses of a step: those of the last one, where the contact was there, turned with its normal.
+#pragma once
+
+#include "impulse_memory.hpp"
+#include "state.hpp"
+
+namespace nscd {
+
+class WarmStart {
+ public:
+  // Keeps the impulses of all contacts.
+  void remember(const State &state);
+  // Gives the contacts from `first` on their start impulses, and the bodies what those do.
+  void recall(State &state, std::size_t first) const;
+
+ private:
+  void recall_normal(State &state, std::size_t first) const;
+
+  // One of them is used, the others stay empty.
+  ImpulseMemory<NormalImpulse> normal_;
+  ImpulseMemory<PlanarImpulse> planar_;
+  ImpulseMemory<SpatialImpulse> spatial_;
+};
+
+// The rotation that takes the unit vector `from` to `to` the shortest way, applied to p perpendicular to `from`.
+Vec4 turn_along(const Vec4 &p, const Vec4 &from, const Vec4 &to);
+
+}    // namespace nscd
