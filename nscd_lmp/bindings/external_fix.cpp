@@ -13,7 +13,7 @@ constexpr int in_setup = 0, in_first_step = 1;
 ExternalFix::ExternalFix(const Library &library, const std::string &id, const std::string &pair_style, double cutoff, int group_bit,
                          const Settings &settings, Step::CustomSolver custom) :
     library_(library),
-    id_(id), pair_style_(pair_style), cutoff_(cutoff), group_bit_(group_bit), step_(settings, std::move(custom))
+    id_(id), pair_style_(pair_style), cutoff_(cutoff), group_bit_(group_bit), step_(settings, std::move(custom), setting("dimension"))
 {
 }
 
@@ -47,7 +47,7 @@ void ExternalFix::begin_run(int first_call)
   require_last();
   find_list();
   // A list that the setup built is as old as the run; grains stay where they are until the first step.
-  step_.begin_run(setting("neigh_ago") <= first_call, setting("dimension"));
+  step_.begin_run(setting("neigh_ago") <= first_call);
 }
 
 void ExternalFix::advance()

@@ -4,14 +4,6 @@
 
 namespace nscd {
 
-void require_planar_walls(const Settings &settings)
-{
-  for (std::size_t k = 0; k < settings.walls.size(); ++k)
-    if (settings.walls[k].normal[2] != 0)
-      fail("wall ", k + 1, ": its normal has a z component, but the scene is planar (dimension 2): make it 0, or use "
-           "dimension 3");
-}
-
 void require_planar(const State &s)
 {
   const Grains &g = s.grains;

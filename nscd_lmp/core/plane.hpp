@@ -5,9 +5,6 @@
 
 namespace nscd {
 
-// Raises Error for a wall that is not perpendicular to the plane.
-void require_planar_walls(const Settings &settings);
-
 // Raises Error for an atom at another z than the first, or a moving one with a velocity or force along z.
 void require_planar(const State &state);
 

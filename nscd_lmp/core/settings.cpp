@@ -81,7 +81,19 @@ static void normalise(Plane &wall, std::size_t index)
   for (int d = 0; d < 3; ++d) n[d] /= length;
 }
 
-Settings checked(Settings s)
+static void check_dimension(const Settings &s, int dimension)
+{
+  if (dimension != 2) {
+    if (s.inertia == Inertia::disc) fail("inertia disc needs `dimension 2`: grains in space are spheres");
+    return;
+  }
+  for (std::size_t k = 0; k < s.walls.size(); ++k)
+    if (s.walls[k].normal[2] != 0)
+      fail("wall ", k + 1, ": its normal has a z component, but the scene is planar (dimension 2): make it 0, or use "
+           "dimension 3");
+}
+
+Settings checked(Settings s, int dimension)
 {
   const SolverEntry &solver = find_solver(s.solver);
   find_law(s.law);
@@ -95,6 +107,7 @@ Settings checked(Settings s)
   check_parameter("rho", s.rho, solver);
   check_parameter("gamma", s.gamma, solver);
   for (std::size_t k = 0; k < s.walls.size(); ++k) normalise(s.walls[k], k);
+  check_dimension(s, dimension);
   return s;
 }
 

@@ -22,16 +22,45 @@ int unknowns(Model model)
 
 void place_slides(State &s, std::size_t first)
 {
+  const double pairs = s.settings.friction;
   with_friction(s.friction.model, [&]<class M>(M) {
     auto &slides = s.friction.slides<M>();
     resize_closely(slides, s.contacts.size());
     for (std::size_t k = first; k < slides.size(); ++k) {
       const int j = s.infos[k].atom_j;
       slides[k] = typename M::Slide{};
-      slides[k].mu = j < 0 ? s.settings.wall_friction(wall_index({0, j})) : s.settings.friction;
+      slides[k].mu = j < 0 ? s.settings.wall_friction(wall_index({0, j})) : pairs;
     }
   });
 }
+
+namespace {
+
+template <class M>
+NSCD_HOT double slip_norm2_of(const State &s, std::size_t first, std::size_t last)
+{
+  const auto &slides = s.friction.slides<M>();
+  double sum = 0;
+  for (std::size_t k = first; k < last; ++k) {
+    const auto u = velocity<M>(s.contacts[k], s.bodies.data(), s.friction.spins.data()).t + bias(slides[k]);
+    sum += inner(u, u);
+  }
+  return sum;
+}
+
+template <class M>
+NSCD_HOT double tangential_work_of(const State &s)
+{
+  const auto &slides = s.friction.slides<M>();
+  double sum = 0;
+  for (std::size_t k = 0; k < slides.size(); ++k) {
+    const auto after = velocity<M>(s.contacts[k], s.bodies.data(), s.friction.spins.data()).t;
+    sum += inner(slides[k].impulse, slip_at_start<M>(s, k) + after);
+  }
+  return sum;
+}
+
+}    // namespace
 
 void set_tangential_bias(State &s, std::size_t first, double e_t)
 {
@@ -45,26 +74,14 @@ void set_tangential_bias(State &s, std::size_t first, double e_t)
 double slip_norm2(const State &s, std::size_t first, std::size_t last)
 {
   double sum = 0;
-  with_friction(s.friction.model, [&]<class M>(M) {
-    const auto &slides = s.friction.slides<M>();
-    for (std::size_t k = first; k < last; ++k) {
-      const auto u = velocity<M>(s.contacts[k], s.bodies.data(), s.friction.spins.data()).t + bias(slides[k]);
-      sum += inner(u, u);
-    }
-  });
+  with_friction(s.friction.model, [&]<class M>(M) { sum = slip_norm2_of<M>(s, first, last); });
   return sum;
 }
 
 double tangential_work(const State &s)
 {
   double sum = 0;
-  with_friction(s.friction.model, [&]<class M>(M) {
-    const auto &slides = s.friction.slides<M>();
-    for (std::size_t k = 0; k < slides.size(); ++k) {
-      const auto after = velocity<M>(s.contacts[k], s.bodies.data(), s.friction.spins.data()).t;
-      sum += inner(slides[k].impulse, slip_at_start<M>(s, k) + after);
-    }
-  });
+  with_friction(s.friction.model, [&]<class M>(M) { sum = tangential_work_of<M>(s); });
   return sum;
 }
 

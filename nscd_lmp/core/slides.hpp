@@ -50,7 +50,7 @@ Tangents tangents(const Vec4 &normal, Model model);
 
 // Tangential velocity of contact k at the start of the step.
 template <class M>
-typename M::Tangent slip_at_start(const State &s, std::size_t k)
+NSCD_INLINE typename M::Tangent slip_at_start(const State &s, std::size_t k)
 {
   const Contact &c = s.contacts[k];
   Vec4 difference{}, spins{};

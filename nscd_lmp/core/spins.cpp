@@ -10,12 +10,12 @@ namespace nscd {
 namespace {
 
 // Change of the surface velocity by a unit of torque over the step: dt k / (m r).
-double change_per_torque(const State &s, int i)
+NSCD_INLINE double change_per_torque(const State &s, int i)
 {
   return s.dt * s.grains.force_to_acceleration * s.friction.spin_response * s.bodies[i][3] / s.grains.radius[i];
 }
 
-Vec4 smooth_change(const State &s, int i)
+NSCD_INLINE Vec4 smooth_change(const State &s, int i)
 {
   if (!s.grains.torque) return Vec4{};
   const double *torque = s.grains.torque + 3 * std::size_t(i);
@@ -24,7 +24,7 @@ Vec4 smooth_change(const State &s, int i)
 
 }    // namespace
 
-void gather_spins(State &s)
+NSCD_HOT void gather_spins(State &s)
 {
   auto &spins = s.friction.spins;
   spins.resize(s.bodies.size());
@@ -41,7 +41,7 @@ void add_smooth_spins(State &s, double share)
   for (int i = 0; i < s.grains.owned; ++i) s.friction.spins[i] += smooth_change(s, i) * share;
 }
 
-void write_back_spins(const State &s)
+NSCD_HOT void write_back_spins(const State &s)
 {
   for (int i = 0; i < s.grains.owned; ++i) {
     if (s.bodies[i][3] == 0) continue;

@@ -1,6 +1,7 @@
 // Spins of grains: LAMMPS' angular velocities in and out, as surface velocities s = r omega between.
 #pragma once
 
+#include "hot.hpp"
 #include "state.hpp"
 
 namespace nscd {
@@ -15,7 +16,7 @@ void add_smooth_spins(State &state, double share);
 void write_back_spins(const State &state);
 
 // Surface velocity of an owned atom at the start of the step.
-inline Vec4 start_spin(const State &s, int i)
+NSCD_INLINE Vec4 start_spin(const State &s, int i)
 {
   const double *w = s.grains.omega + 3 * std::size_t(i);
   return Vec4{w[0], w[1], w[2], 0} * s.grains.radius[i];

@@ -44,7 +44,7 @@ struct Friction {
 struct State {
   const Settings &settings;
   Grains grains;
-  int dimension = 3;
+  int dimension = 3;                     // 2: all grains in a plane z = const
   double dt = 0;
 
   std::vector<Sphere> spheres{};         // (owned + ghosts)

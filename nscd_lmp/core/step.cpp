@@ -22,30 +22,21 @@ static double seconds(Clock::time_point from, Clock::time_point to)
   return std::chrono::duration<double>(to - from).count();
 }
 
-Step::Step(const Settings &settings, CustomSolver custom) :
-    settings_(checked(settings)), solver_(&find_solver(settings_.solver)), custom_(std::move(custom)),
-    law_(find_law(settings_.law).make()), state_{.settings = settings_, .grains = {}},
+Step::Step(const Settings &settings, CustomSolver custom, int dimension) :
+    settings_(checked(settings, dimension)), solver_(&find_solver(settings_.solver)), custom_(std::move(custom)),
+    law_(find_law(settings_.law).make()), state_{.settings = settings_, .grains = {}, .dimension = dimension},
     prediction_(law_->prediction(settings_)), look_ahead_(law_->looks_ahead() ? 1 : 0)
 {
   options_.tol = settings_.tol;
   options_.maxiter = settings_.maxiter;
   options_.parameter = solver_parameter(settings_, *solver_);
-  choose_model(state_.dimension);
-}
-
-void Step::choose_model(int dimension)
-{
   const Inertia inertia = settings_.inertia.value_or(dimension == 2 ? Inertia::disc : Inertia::sphere);
-  state_.dimension = dimension;
-  state_.friction.model = nscd::choose_model(settings_, dimension);
+  state_.friction.model = choose_model(settings_, dimension);
   state_.friction.spin_response = inertia == Inertia::disc ? disc_spin_response : sphere_spin_response;
 }
 
-void Step::begin_run(bool list_just_built, int dimension)
+void Step::begin_run(bool list_just_built)
 {
-  if (dimension == 2) require_planar_walls(settings_);
-  else if (settings_.inertia == Inertia::disc) fail("inertia disc needs `dimension 2`: grains in space are spheres");
-  choose_model(dimension);
   report_ = {};
   if (list_just_built) list_.expect_new_list();
 }

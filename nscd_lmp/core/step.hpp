@@ -36,14 +36,14 @@ class Step {
   // impacts), overwrites their start impulses (N s; per contact N, or N, T1[, T2] along tangents()).
   using CustomSolver = std::function<void(const State &, std::size_t contacts, std::span<double>)>;
 
-  // Raises Error for bad settings.
-  explicit Step(const Settings &settings, CustomSolver custom = {});
+  // `dimension`: 3, or 2 for grains in a plane z = const; with the settings it decides how many unknowns a contact has.
+  // Raises Error for bad settings, or for settings that do not fit the dimension.
+  explicit Step(const Settings &settings, CustomSolver custom = {}, int dimension = 3);
   Step(const Step &) = delete;
   Step &operator=(const Step &) = delete;
 
-  // Energy and unconverged steps count from here, and the model is chosen. `list_just_built`: the first step starts from
-  // its positions. `dimension`: 3, or 2 for grains in a plane z = const. Raises Error if the settings do not fit it.
-  void begin_run(bool list_just_built, int dimension = 3);
+  // Energy and unconverged steps count from here. `list_just_built`: the first step starts from its positions.
+  void begin_run(bool list_just_built);
 
   // One step of length dt (s). Raises Error and leaves the arrays as they were if the input is bad, a contact
   // can be missed, or the step does not converge under `unconverged error`.
@@ -79,7 +79,6 @@ class Step {
   void solve_within_energy(const Part &part, EnergyLimit::From from);
   void ask_custom(std::size_t count);
   double free_norm(std::size_t first, std::size_t last) const;
-  void choose_model(int dimension);
   void finish();
   void tally_contacts();
   void write_back(const PairList &pairs);

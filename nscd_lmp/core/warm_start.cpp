@@ -6,9 +6,9 @@ namespace nscd {
 
 namespace {
 
-Vec4 load(const double *v) { return Vec4{v[0], v[1], v[2], 0}; }
+NSCD_INLINE Vec4 load(const double *v) { return Vec4{v[0], v[1], v[2], 0}; }
 
-void store(double *at, const Vec4 &v)
+NSCD_INLINE void store(double *at, const Vec4 &v)
 {
   for (int d = 0; d < 3; ++d) at[d] = v[d];
 }
@@ -29,7 +29,7 @@ SpatialImpulse entry(const Contact &c, const ContactInfo &info, const Spatial::S
 double turned_impulse(const PlanarImpulse &e, const Vec4 &) { return e.tangential; }
 
 // A pair may be listed the other way round than before: then normal and impulse both change sign.
-Vec4 turned_impulse(const SpatialImpulse &e, const Vec4 &normal)
+NSCD_INLINE Vec4 turned_impulse(const SpatialImpulse &e, const Vec4 &normal)
 {
   const Vec4 before = load(e.direction), p = load(e.tangential);
   const bool same = dot(before, normal) > 0;
@@ -37,14 +37,14 @@ Vec4 turned_impulse(const SpatialImpulse &e, const Vec4 &normal)
 }
 
 template <class M, class Memory>
-void remember_all(const State &s, Memory &memory)
+NSCD_HOT void remember_all(const State &s, Memory &memory)
 {
   const auto &slides = s.friction.slides<M>();
   memory.remember(s.infos, [&](std::size_t k) { return entry(s.contacts[k], s.infos[k], slides[k]); });
 }
 
 template <class M, class Memory>
-void recall_all(State &s, const Memory &memory, std::size_t first)
+NSCD_HOT void recall_all(State &s, const Memory &memory, std::size_t first)
 {
   auto &slides = s.friction.slides<M>();
   for (std::size_t k = first; k < s.contacts.size(); ++k) {

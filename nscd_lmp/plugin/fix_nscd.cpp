@@ -53,7 +53,7 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
   nscd::Settings settings;
   or_stop(error, id, [&] {
     nscd::parse_keywords(settings, {arg + 3, arg + narg});
-    step_ = std::make_unique<nscd::Step>(settings);
+    step_ = std::make_unique<nscd::Step>(settings, nscd::Step::CustomSolver{}, domain->dimension);
   });
   size_local_cols = nscd::contact_columns(settings);
 }
@@ -115,7 +115,7 @@ void FixNscd::init()
 void FixNscd::setup(int /*vflag*/)
 {
   find_list();
-  or_stop(error, id, [&] { step_->begin_run(neighbor->ago == 0, domain->dimension); });
+  step_->begin_run(neighbor->ago == 0);
   steps_ = 0;
   nscd_progress.begin_run(update->beginstep, update->endstep, update->ntimestep);
   if (comm->me == 0)
