@@ -38,6 +38,12 @@ NSCD_INLINE double length(const Vec4 &a) { return std::sqrt(dot(a, a)); }
 
 using Places = std::int64_t __attribute__((vector_size(32)));
 
+NSCD_INLINE Vec4 magnitudes(const Vec4 &a)
+{
+  constexpr std::int64_t all = 0x7FFFFFFFFFFFFFFF;
+  return (Vec4)((Places)a & Places{all, all, all, all});
+}
+
 // The fourth component is 0 if those of a and b are finite.
 NSCD_INLINE Vec4 cross(const Vec4 &a, const Vec4 &b)
 {
