@@ -56,12 +56,13 @@ def walls() -> list[nscd_lmp.Plane]:
     return [nscd_lmp.Plane(point, normal) for point, normal in [((0, 0, 0), (0, 0, 1)), *sides]]
 
 
-def bed(door: str, folder: Path) -> dict[str, Any]:
+def bed(door: str, folder: Path, friction: float = 0.0) -> dict[str, Any]:
     """Let 60 grains fall and settle in three runs; the dump holds every bit of every step."""
     lmp = start(60)
     lmp.commands_list(["group upper id > 30", "group lower subtract all upper"])
-    attached = nscd_lmp.attach(lmp, walls=walls(), unconverged="ignore", door=door)
-    lmp.command(f"dump steps all custom 1 {folder / 'steps'} id x y z vx vy vz fx fy fz")
+    attached = nscd_lmp.attach(lmp, walls=walls(), unconverged="ignore", door=door, friction=friction)
+    columns = "id x y z vx vy vz fx fy fz omegax omegay omegaz tqx tqy tqz"
+    lmp.command(f"dump steps all custom 1 {folder / 'steps'} {columns}")
     lmp.command("dump_modify steps sort id format float %.17g")
     lmp.command("run 600")
     dissipated = attached.stats["dissipated_energy"].tolist()
@@ -76,6 +77,11 @@ def bed(door: str, folder: Path) -> dict[str, Any]:
         "in main": [name for name in vars(sys.modules["__main__"]) if "nscd" in name and name != "nscd_lmp"],
         "last fix": lmp._nscd.inspection.fixes()[-1].style,
     }
+
+
+def rough_bed(door: str, folder: Path) -> dict[str, Any]:
+    """Do the same with friction."""
+    return bed(door, folder, friction=0.4)
 
 
 def solo(system: nscd_lmp.ContactSystem) -> np.ndarray:
