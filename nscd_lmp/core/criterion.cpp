@@ -63,7 +63,8 @@ NSCD_HOT Sums frictional(const Problem &problem, const double *local_velocity)
     sum.natural += residual * residual;
     if (!local_velocity) continue;
     const auto own = load_carried<Tangent>(local_velocity + k * carried_doubles<Tangent>);
-    sum.of.motion += std::hypot(own.n - v.n, length(own.t - v.t));
+    const Split<Tangent> off{own.n - v.n, own.t - v.t};
+    sum.of.motion += std::sqrt(off.n * off.n + inner(off.t, off.t));
   }
   return sum;
 }

@@ -31,10 +31,11 @@ struct FrictionalLocal {
   Split<Tangent> v = {};
 };
 
-// The contact's own part of its problem: the inverse of its block of W, and Coulomb's coefficient, infinite for stick.
+// The contact's own part of its problem: its block of W and the inverse, and Coulomb's coefficient, infinite for stick.
 struct OwnBlock {
-  double w_inverse;   // 1 / W_nn, kg
-  double wt_inverse;  // 1 / W_tt, kg
+  double w, wt;                  // W_nn and W_tt, 1/kg
+  double w_inverse, wt_inverse;  // kg
+  double ratio;                  // W_tt / W_nn
   double mu;
 };
 
@@ -92,7 +93,7 @@ NSCD_HOT double sweep(Problem &problem, [[maybe_unused]] double *carried, double
   Vec4 *const spins = problem.sliding.spins;
   Contact *const contacts = problem.contacts.data();
   auto *const slides = problem.sliding.template slides<M>();
-  const double response = problem.sliding.spin_response, tangential_share = 1 / (1 + response);
+  const double response = problem.sliding.spin_response, ratio = 1 + response, ratio_inverse = 1 / ratio;
   const std::size_t n = problem.contacts.size();
   Vec4 corrected{};
   for (std::size_t k = 0; k < n; ++k) {
@@ -105,7 +106,8 @@ NSCD_HOT double sweep(Problem &problem, [[maybe_unused]] double *carried, double
     const Split<Tangent> v{vn + c.bias, M::slip(c.normal, difference, vn, si + sj) + bias(slide)};
     FrictionalLocal<Tangent> local{{c.impulse, slide.impulse}, {}};
     if constexpr (Law::carries_velocity) local.v = load_carried<Tangent>(carried + k * carried_doubles<Tangent>);
-    local = Law::visit(local, v, OwnBlock{c.w_inverse, c.w_inverse * tangential_share, slide.mu}, parameter);
+    const double w = bi[3] + bj[3];
+    local = Law::visit(local, v, OwnBlock{w, w * ratio, c.w_inverse, c.w_inverse * ratio_inverse, ratio, slide.mu}, parameter);
     if constexpr (Law::carries_velocity) store_carried<Tangent>(carried + k * carried_doubles<Tangent>, local.v);
     const double dp = local.p.n - c.impulse;
     const Tangent dpt = local.p.t - slide.impulse;
@@ -117,10 +119,10 @@ NSCD_HOT double sweep(Problem &problem, [[maybe_unused]] double *carried, double
     bodies[c.j] = bj - push * bj[3];
     M::set_spin(spins[c.i], si - turn * bi[3]);
     M::set_spin(spins[c.j], sj - turn * bj[3]);
-    corrected += magnitudes(push) * (bi[3] + bj[3]);
+    corrected += magnitudes(push) * w;
   }
   // Between the mean of normal and tangential corrections; a root a contact would cost a tenth of the sweep.
-  return 0.5 * (2 + response) * (corrected[0] + corrected[1] + corrected[2]);
+  return 0.5 * (1 + ratio) * (corrected[0] + corrected[1] + corrected[2]);
 }
 
 // The criterion costs a pass of its own, so far from convergence it is not taken: (42) is bounded by about

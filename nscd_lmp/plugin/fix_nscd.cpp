@@ -221,5 +221,8 @@ double FixNscd::compute_array(int /*row*/, int column) { return totals_.column(c
 
 double FixNscd::memory_usage()
 {
-  return double(step_->state().contacts.capacity()) * (sizeof(nscd::Contact) + sizeof(nscd::ContactInfo));
+  const nscd::State &s = step_->state();
+  const auto &f = s.friction;
+  return double(s.contacts.capacity()) * (sizeof(nscd::Contact) + sizeof(nscd::ContactInfo)) +
+      double(f.planar.capacity()) * sizeof(nscd::Planar::Slide) + double(f.spatial.capacity()) * sizeof(nscd::Spatial::Slide);
 }

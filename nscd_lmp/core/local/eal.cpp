@@ -29,14 +29,15 @@ struct Eal {
     const double step = rho * own.w_inverse, tau = chi.p.n - step * chi.v.n;
     if (!(tau > 0)) return opened(chi, v, own);
     const Tangent tau_t = chi.p.t - chi.v.t * step;
-    const double tangential = length(tau_t), radius = own.mu * tau;
-    if (tangential <= radius) return stuck(chi, v, own);
-    const Tangent t = tau_t * (1 / tangential);
+    const double length2 = inner(tau_t, tau_t), radius = own.mu * tau;
+    if (length2 <= radius * radius) return stuck(chi, v, own);
+    const double inverse = 1 / std::sqrt(length2);
+    const Tangent t = tau_t * inverse;
     const double normal = chi.p.n - v.n * own.w_inverse;
-    const Tangent change = step_across(t, chi.p.t, v.t, radius / tangential, rho, own);
+    const Tangent change = step_across(t, chi.p.t, v.t, radius * inverse, rho, own);
     const Tangent across = chi.p.t - t * inner(chi.p.t, t) + change;
     const Tangent p_t = t * (own.mu * normal) + across;
-    return {{normal, p_t}, {0.0, v.t + (p_t - chi.p.t) * (1 / own.wt_inverse)}};
+    return {{normal, p_t}, {0.0, v.t + (p_t - chi.p.t) * own.wt}};
   }
 };
 

@@ -39,20 +39,22 @@ struct Ebp {
     if (std::isinf(mu)) return chi.p.n - step * chi.v.n > 0 ? stuck(chi, v, own) : opened(chi, v, own);
     const double slip = length(chi.v.t), tau = chi.p.n - step * (chi.v.n + mu * slip);
     const Tangent tau_t = chi.p.t - chi.v.t * step;
-    const double tangential = length(tau_t);
+    const double length2 = inner(tau_t, tau_t);
+    if (tau > 0 && length2 <= mu * mu * tau * tau) return stuck(chi, v, own);
+    const double tangential = std::sqrt(length2);
     if (!(tau + mu * tangential > 0)) return opened(chi, v, own);
-    if (tangential <= mu * tau) return stuck(chi, v, own);
-    const Tangent t = tau_t * (1 / tangential);
+    const double inverse = 1 / tangential, cone = 1 / (1 + mu * mu);
+    const Tangent t = tau_t * inverse;
     const Tangent h = slip > 0 ? chi.v.t * (1 / slip) : -t;
-    const double m = mu * (tau + mu * tangential) / ((1 + mu * mu) * tangential);
+    const double m = mu * (tau + mu * tangential) * cone * inverse;
     const Tangent change = step_across(t, chi.p.t, v.t, m, rho, own);
-    const double along = inner(chi.p.t, t), aligned = 1 + inner(h, t), ratio = own.w_inverse / own.wt_inverse;
+    const double along = inner(chi.p.t, t), aligned = 1 + inner(h, t);
     const double slips = inner(h + t, v.t) * own.w_inverse +
-        ratio * (aligned * (mu * chi.p.n - along) + inner(h, change));
-    const double dp = -(v.n * own.w_inverse + mu * slips) / (1 + mu * mu * ratio * aligned);
+        own.ratio * (aligned * (mu * chi.p.n - along) + inner(h, change));
+    const double dp = -(v.n * own.w_inverse + mu * slips) / (1 + mu * mu * own.ratio * aligned);
     const double normal = chi.p.n + dp;
     const Tangent p_t = t * (mu * normal) + (chi.p.t - t * along) + change;
-    return {{normal, p_t}, {v.n + dp / own.w_inverse, v.t + (p_t - chi.p.t) * (1 / own.wt_inverse)}};
+    return {{normal, p_t}, {v.n + dp * own.w, v.t + (p_t - chi.p.t) * own.wt}};
   }
 };
 

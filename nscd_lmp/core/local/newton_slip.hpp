@@ -12,7 +12,7 @@ template <class Tangent>
 NSCD_INLINE Tangent step_across(const Tangent &t, const Tangent &p, const Tangent &u, double m, double rho,
                                 const OwnBlock &own)
 {
-  const double stiffness = 1 - m + m * rho * own.w_inverse / own.wt_inverse;
+  const double stiffness = 1 - m + m * rho * own.ratio;
   const Tangent right = p * (m - 1) - u * (m * rho * own.w_inverse);
   return (right - t * inner(right, t)) * (1 / stiffness);
 }
@@ -22,7 +22,7 @@ template <class Tangent>
 NSCD_INLINE FrictionalLocal<Tangent> opened(const FrictionalLocal<Tangent> &chi, const Split<Tangent> &v,
                                             const OwnBlock &own)
 {
-  return {.v = {v.n - chi.p.n / own.w_inverse, v.t - chi.p.t * (1 / own.wt_inverse)}};
+  return {.v = {v.n - chi.p.n * own.w, v.t - chi.p.t * own.wt}};
 }
 
 // The chi of a contact that sticks: v~ = 0.
