@@ -10,10 +10,11 @@ namespace nscd {
 // Steps since the run began, at the first call: fix external calls in the setup too, fix python/invoke does not.
 constexpr int in_setup = 0, in_first_step = 1;
 
-ExternalFix::ExternalFix(const Library &library, const std::string &id, const std::string &pair_style, double cutoff, int group_bit,
-                         const Settings &settings, Step::CustomSolver custom) :
+ExternalFix::ExternalFix(const Library &library, const std::string &id, const std::string &pair_style, double cutoff,
+                         int group_bit, const Settings &settings, Step::CustomSolver custom) :
     library_(library),
-    id_(id), pair_style_(pair_style), cutoff_(cutoff), group_bit_(group_bit), step_(settings, std::move(custom), setting("dimension"))
+    id_(id), pair_style_(pair_style), cutoff_(cutoff), group_bit_(group_bit),
+    step_(settings, std::move(custom), setting("dimension"))
 {
 }
 

@@ -24,8 +24,8 @@ struct StatsRow {
 class ExternalFix {
  public:
   // `cutoff`: pair cutoff plus skin, m, up to which centres are listed at a build.
-  ExternalFix(const Library &library, const std::string &id, const std::string &pair_style, double cutoff, int group_bit,
-              const Settings &settings, Step::CustomSolver custom);
+  ExternalFix(const Library &library, const std::string &id, const std::string &pair_style, double cutoff,
+              int group_bit, const Settings &settings, Step::CustomSolver custom);
 
   // Called by LAMMPS with the step's arrays: the signature of FixExternalFnPtr.
   static void callback(void *self, std::int64_t timestep, int owned, int *tags, double **x, double **f_external);

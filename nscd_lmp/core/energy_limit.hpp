@@ -1,10 +1,11 @@
 // Keeps Newton's law of impact with friction from making energy.
 //
-// With e = e_t on all contacts the law takes energy, always (Leine & van de Wouw 2008): the impulses P and the velocities
-// u+ + e u- obey P.(u+ + e u-) <= 0. With e != e_t that bound is lost, and where one impact drives another contact the
-// energy may rise (Kane & Levinson 1985). The inelastic solution (e = e_t = 0) always takes energy. Both solutions lie in
-// the convex cone of friction, and so does every blend of the two; the work of the contacts is a quadratic function
-// of the share. So a solution that would make energy is blended with the inelastic one until it makes none.
+// With e = e_t on all contacts the law takes energy, always (Leine & van de Wouw 2008): the impulses P and the
+// velocities u+ + e u- obey P.(u+ + e u-) <= 0. With e != e_t that bound is lost, and where one impact drives another
+// contact the energy may rise (Kane & Levinson 1985). The inelastic solution (e = e_t = 0) always takes energy. Both
+// solutions lie in the convex cone of friction, and so does every blend of the two; the work of the contacts is a
+// quadratic function of the share. So a solution that would make energy is blended with the inelastic one until it
+// makes none.
 #pragma once
 
 #include "state.hpp"

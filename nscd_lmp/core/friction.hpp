@@ -129,8 +129,8 @@ NSCD_INLINE Split<typename Model::Tangent> velocity(const Contact &c, const Body
 
 // Hands a tangential impulse to both bodies.
 template <class Model>
-NSCD_INLINE void apply_tangential(const Contact &c, const typename Model::Tangent &dp, double spin_response, Body *bodies,
-                                  Vec4 *spins)
+NSCD_INLINE void apply_tangential(const Contact &c, const typename Model::Tangent &dp, double spin_response,
+                                  Body *bodies, Vec4 *spins)
 {
   const Body bi = bodies[c.i], bj = bodies[c.j];
   const Vec4 push = Model::in_space(c.normal, dp);

@@ -107,7 +107,8 @@ NSCD_HOT double sweep(Problem &problem, [[maybe_unused]] double *carried, double
     FrictionalLocal<Tangent> local{{c.impulse, slide.impulse}, {}};
     if constexpr (Law::carries_velocity) local.v = load_carried<Tangent>(carried + k * carried_doubles<Tangent>);
     const double w = bi[3] + bj[3];
-    local = Law::visit(local, v, OwnBlock{w, w * ratio, c.w_inverse, c.w_inverse * ratio_inverse, ratio, slide.mu}, parameter);
+    const OwnBlock own{w, w * ratio, c.w_inverse, c.w_inverse * ratio_inverse, ratio, slide.mu};
+    local = Law::visit(local, v, own, parameter);
     if constexpr (Law::carries_velocity) store_carried<Tangent>(carried + k * carried_doubles<Tangent>, local.v);
     const double dp = local.p.n - c.impulse;
     const Tangent dpt = local.p.t - slide.impulse;

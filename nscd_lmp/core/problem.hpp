@@ -10,12 +10,12 @@
 namespace nscd {
 
 struct Problem {
-  std::span<Body> bodies;       // 32 B aligned; in: free velocities plus what the impulses on entry gave them; out: solution
+  std::span<Body> bodies;       // 32 B aligned; in: free velocities plus what the start impulses gave; out: solution
   std::span<Contact> contacts;  // in: start impulses; out: solution
   double restitution = 0;       // e of (21); scales v to v~ = v / (1 + e) in the criterion
   double free_norm = 0;         // ||v_free + bias||_2 over the contacts, the scale of the relative residual, m/s
   std::vector<double> &workspace;  // the solver's own unknowns; kept between steps, so a steady step allocates nothing
-  Sliding sliding{};            // tangential impulses and spins, as bodies and contacts; nothing for a frictionless scene
+  Sliding sliding{};            // tangential impulses and spins, in and out as these; nothing in a frictionless scene
 };
 
 }    // namespace nscd

@@ -66,7 +66,8 @@ static void check_friction(const Settings &s)
   require_range("e_t", s.e_t, 0, 1);
   if (s.frictional()) return;
   if (s.e_t > 0) fail("e_t = ", s.e_t, " has no effect without friction: give `friction`, or leave e_t out");
-  if (s.inertia) fail("inertia has no effect without friction: grains do not spin; give `friction`, or leave inertia out");
+  if (s.inertia)
+    fail("inertia has no effect without friction: grains do not spin; give `friction`, or leave inertia out");
 }
 
 static void normalise(Plane &wall, std::size_t index)

@@ -54,7 +54,8 @@ struct SolverEntry;
 // rho or gamma, whichever the solver takes, as a multiple of 1/W_nn.
 double solver_parameter(const Settings &settings, const SolverEntry &solver);
 
-// Raises Error (value, limit, remedy) for anything out of range or that does not fit the dimension; normalises the walls' normals.
+// Raises Error (value, limit, remedy) for anything out of range or that does not fit the dimension; normalises the
+// walls' normals.
 Settings checked(Settings settings, int dimension = 3);
 
 }    // namespace nscd

@@ -6,7 +6,8 @@
 
 namespace nscd {
 
-// Fills state.friction.spins with the free spins s_k + dt k T / (m r), 0 for walls. Raises Error for one that is no number.
+// Fills state.friction.spins with the free spins s_k + dt k T / (m r), 0 for walls. Raises Error for one that is not
+// finite.
 void gather_spins(State &state);
 
 // Adds `share` times the change that the smooth torques of the step make.

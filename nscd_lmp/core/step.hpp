@@ -32,8 +32,8 @@ struct StepReport {
 
 class Step {
  public:
-  // Takes the place of the built-in solver: reads the first `contacts` contacts (all of the step's, or those of a round of
-  // impacts), overwrites their start impulses (N s; per contact N, or N, T1[, T2] along tangents()).
+  // Takes the place of the built-in solver: reads the first `contacts` contacts (all of the step's, or those of a round
+  // of impacts), overwrites their start impulses (N s; per contact N, or N, T1[, T2] along tangents()).
   using CustomSolver = std::function<void(const State &, std::size_t contacts, std::span<double>)>;
 
   // `dimension`: 3, or 2 for grains in a plane z = const; with the settings it decides how many unknowns a contact has.

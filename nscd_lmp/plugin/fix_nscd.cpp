@@ -68,8 +68,8 @@ void FixNscd::check_atoms()
     error->all(FLERR, "Fix nscd {}: atoms have no radius: use atom_style sphere", id);
   if (step_->settings().frictional() && !atom->omega_flag)
     error->all(FLERR,
-               "Fix nscd {}: friction turns grains, but atoms have no angular velocity: use atom_style sphere, or leave "
-               "friction out",
+               "Fix nscd {}: friction turns grains, but atoms have no angular velocity: use atom_style sphere, or "
+               "leave friction out",
                id);
   if (!atom->tag_enable) error->all(FLERR, "Fix nscd {}: atoms have no IDs: use atom_modify id yes", id);
   if (comm->nprocs > 1)
@@ -222,7 +222,7 @@ double FixNscd::compute_array(int /*row*/, int column) { return totals_.column(c
 double FixNscd::memory_usage()
 {
   const nscd::State &s = step_->state();
-  const auto &f = s.friction;
   return double(s.contacts.capacity()) * (sizeof(nscd::Contact) + sizeof(nscd::ContactInfo)) +
-      double(f.planar.capacity()) * sizeof(nscd::Planar::Slide) + double(f.spatial.capacity()) * sizeof(nscd::Spatial::Slide);
+      double(s.friction.planar.capacity()) * sizeof(nscd::Planar::Slide) +
+      double(s.friction.spatial.capacity()) * sizeof(nscd::Spatial::Slide);
 }

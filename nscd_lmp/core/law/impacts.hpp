@@ -22,7 +22,8 @@
 
 namespace nscd {
 
-// Solves for the impulses of the first `count` contacts, whose biases are those of impacts, and applies them to the bodies.
+// Solves for the impulses of the first `count` contacts, whose biases are those of impacts, and applies them to the
+// bodies.
 using SolvePart = std::function<void(std::size_t count)>;
 
 // Bodies: in, free velocities; out, the same plus what the impacts gave them. Contacts: in and out, no impulses; the

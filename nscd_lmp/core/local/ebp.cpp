@@ -15,8 +15,8 @@
 // Makes exact: the motion of the contact at each visit. Fails: the status lags a visit behind, so p < 0 can
 // stand for a sweep. rho only weighs p against v~ in the status: too small is deaf to v~, hence slow.
 // With friction rho W_tt > 1 lets stick and slip alternate forever (a quarter of all single contacts at rho = 1/W_nn),
-// so the default is then 1/4, 7/8 of 1/W_tt for spheres. One contact in 300 of tests/core/test_one_frictional_contact.cpp
-// is not solved, nearly all with mu > 1; the step says so.
+// so the default is then 1/4, 7/8 of 1/W_tt for spheres. One contact in 300 of
+// tests/core/test_one_frictional_contact.cpp is not solved, nearly all with mu > 1; the step says so.
 #include "newton_slip.hpp"
 
 namespace nscd {
