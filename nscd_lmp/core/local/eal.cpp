@@ -37,10 +37,12 @@ struct Eal {
     const Tangent change = step_across(t, chi.p.t, v.t, radius * inverse, rho, own);
     const Tangent across = chi.p.t - t * inner(chi.p.t, t) + change;
     const Tangent p_t = t * (own.mu * normal) + across;
-    return {{normal, p_t}, {0.0, v.t + (p_t - chi.p.t) * own.wt}};
+    const Tangent u_t = v.t + (p_t - chi.p.t) * own.wt;
+    if (inner(u_t, t) > 0) return stuck(chi, v, own);  // friction would drive the slip
+    return {{normal, p_t}, {0.0, u_t}};
   }
 };
 
-static const RegisterSolver eal({40, "eal", "EAL", "rho", 1.0, nlgs<Eal>, 0.25});
+static const RegisterSolver eal({40, "eal", "EAL", "rho", 1.0, nlgs<Eal>});
 
 }    // namespace nscd

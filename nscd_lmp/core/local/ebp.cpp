@@ -14,9 +14,9 @@
 // the 2 iterations of its Table 1.
 // Makes exact: the motion of the contact at each visit. Fails: the status lags a visit behind, so p < 0 can
 // stand for a sweep. rho only weighs p against v~ in the status: too small is deaf to v~, hence slow.
-// With friction rho W_tt > 1 lets stick and slip alternate forever (a quarter of all single contacts at rho = 1/W_nn),
-// so the default is then 1/4, 7/8 of 1/W_tt for spheres. One contact in 300 of
-// tests/core/test_one_frictional_contact.cpp is not solved, nearly all with mu > 1; the step says so.
+// With friction plain Newton steps can alternate between two statuses forever, a quarter of all single contacts with
+// rho = 1/W_nn. So a slip is checked: if the new u_t points along t, friction would drive it, and the contact sticks
+// instead. Then every contact of tests/core/test_one_frictional_contact.cpp is solved.
 #include "newton_slip.hpp"
 
 namespace nscd {
@@ -54,10 +54,12 @@ struct Ebp {
     const double dp = -(v.n * own.w_inverse + mu * slips) / (1 + mu * mu * own.ratio * aligned);
     const double normal = chi.p.n + dp;
     const Tangent p_t = t * (mu * normal) + (chi.p.t - t * along) + change;
-    return {{normal, p_t}, {v.n + dp * own.w, v.t + (p_t - chi.p.t) * own.wt}};
+    const Tangent u_t = v.t + (p_t - chi.p.t) * own.wt;
+    if (inner(u_t, t) > 0) return stuck(chi, v, own);  // friction would drive the slip
+    return {{normal, p_t}, {v.n + dp * own.w, u_t}};
   }
 };
 
-static const RegisterSolver ebp({30, "ebp", "EBP", "rho", 1.0, nlgs<Ebp>, 0.25});
+static const RegisterSolver ebp({30, "ebp", "EBP", "rho", 1.0, nlgs<Ebp>});
 
 }    // namespace nscd
