@@ -4,7 +4,8 @@
 //   f~(chi) = ( v~ - v~_m(p) ;  p - proj(tau, R+ x B(0, mu tau_n)) ),  tau = p - rho v~,   df~/dchi Delta chi = -f~
 //   outside the half-cylinder (open):    p <- 0,   v~ <- velocity without this impulse
 //   inside (stick):                      v~ <- 0,  p <- p - W~^-1 v~_m
-//   on its mantle (slip):                v_n <- 0,  p_t.t <- mu p_n, and a Newton step across t = tau_t/|tau_t|
+//   on its mantle (slip):                v_n <- 0,  p_t.t <- mu p_n, and a Newton step across t = tau_t/|tau_t|;
+//                                        where that leaves u_t along t: stick (see EBP)
 // The matrices A_c and B_c in three dimensions, and how these lines follow: docs/friction.md.
 //
 // Carried unknown, start and deviation as in EBP. Makes exact: the motion of the contact at each visit.

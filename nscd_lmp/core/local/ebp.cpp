@@ -5,7 +5,7 @@
 //   tau in the polar cone of K_mu (open):  p <- 0,   v~ <- velocity without this impulse
 //   tau in K_mu (stick):                   v~ <- 0,  p <- p - W~^-1 v~_m
 //   otherwise (slip), t = tau_t/|tau_t|, h = u_t/|u_t| of chi:
-//     p_t.t <- mu p_n,   v_n + mu (h + t).u_t <- 0,   and a Newton step across t
+//     p_t.t <- mu p_n,   v_n + mu (h + t).u_t <- 0,   and a Newton step across t;   where that leaves u_t along t: stick
 // The paper prints tau without the term mu |u_t|, which would be the convex relaxation; see SBP. It gives A_c and B_c
 // without friction; with friction, in three dimensions, they are derived in docs/friction.md.
 //
