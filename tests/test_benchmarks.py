@@ -18,7 +18,9 @@ FILES = {
             "script",
             "solver",
             "steps",
+            "ground",
             "iterations_per_step",
+            "iterations_per_solved_step",
             "paper_iterations_per_step",
             "cpu_seconds_total",
             "paper_cpu_seconds_total",
@@ -39,6 +41,8 @@ FILES = {
     "sweep_cost": {
         "sweep_cost.csv": {
             "part",
+            "model",
+            "friction",
             "grains",
             "contacts",
             "law",
@@ -53,6 +57,28 @@ FILES = {
             "step_us_limit",
             "bytes_per_contact",
         }
+    },
+    "friction_laws": {
+        "friction_laws.csv": {
+            "scene",
+            "start",
+            "friction",
+            "solver",
+            "law",
+            "steps",
+            "grains",
+            "dt",
+            "tol",
+            "maxiter",
+            "contacts",
+            "iterations_per_step",
+            "seconds_per_step",
+            "ns_per_contact_and_iteration",
+            "unconverged_steps",
+            "criterion",
+            "relative_residual",
+        },
+        "friction_laws.png": None,
     },
     "accuracy": {
         "accuracy.csv": {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double tolerances = 10;  // single contacts miss the solver's tolerance by about so much
 
-// The velocity scale below which work is the solver's own error, times the impulses, J.
+// Work that is the solver's own error, J.
 double negligible(const State &s, std::size_t count)
 {
   double impulses = 0;
@@ -65,38 +65,68 @@ void EnergyLimit::load(State &s, std::size_t count, const Motion &a, const Motio
   });
 }
 
-// Half the sum of p (u- + u+), J.
-double EnergyLimit::work(const State &s, std::size_t count, From from) const
+// Half the sum of p (u- + u+), J; u- with the velocities of `before`, or with those at the start of the step.
+double EnergyLimit::work(const State &s, std::size_t count, const Motion *before) const
 {
   double sum = 0;
   with_friction(s.friction.model, [&]<class M>(M) {
     for (std::size_t k = 0; k < count; ++k) {
       const Contact &c = s.contacts[k];
       const auto after = velocity<M>(c, s.bodies.data(), s.friction.spins.data());
-      auto before = velocity<M>(c, before_.bodies.data(), before_.spins.data());
-      if (from == From::step) before = {s.infos[k].speed_before, slip_at_start<M>(s, k)};
-      sum += c.impulse * (before.n + after.n) + inner(s.friction.slides<M>()[k].impulse, before.t + after.t);
+      Split<typename M::Tangent> first{s.infos[k].speed_before, slip_at_start<M>(s, k)};
+      if (before) first = velocity<M>(c, before->bodies.data(), before->spins.data());
+      sum += c.impulse * (first.n + after.n) + inner(s.friction.slides<M>()[k].impulse, first.t + after.t);
     }
   });
   return sum / 2;
 }
 
-bool EnergyLimit::solve(State &s, std::size_t count, From from, const std::function<void()> &solver)
+// Loads the blend of first_ and second_ whose work is down to `limit`.
+void EnergyLimit::blend(State &s, std::size_t count, const Motion *before, double limit)
 {
-  store(s, count, before_);
-  solver();
-  const double elastic = work(s, count, from);
-  if (elastic <= negligible(s, count)) return false;
-  store(s, count, elastic_);
+  load(s, count, first_, first_, 0);
+  const double at0 = work(s, count, before);
+  load(s, count, first_, second_, 1);
+  const double at1 = work(s, count, before);
+  load(s, count, first_, second_, 0.5);
+  const double share = share_down_to(std::max(limit, at1), at0, work(s, count, before), at1);
+  load(s, count, first_, second_, share);
+}
+
+bool EnergyLimit::limit_restitution(State &s, std::size_t count, From from, const std::function<bool()> &solver)
+{
+  const Motion *const before = from == From::step ? nullptr : &before_;
+  if (work(s, count, before) <= negligible(s, count)) return false;
+  store(s, count, first_);
   load(s, count, before_, before_, 0);
   clear_biases(s, count);
   solver();
-  const double inelastic = work(s, count, from);
-  store(s, count, inelastic_);
-  load(s, count, elastic_, inelastic_, 0.5);
-  const double half = work(s, count, from);
-  load(s, count, elastic_, inelastic_, share_down_to(std::max(0.0, inelastic), elastic, half, inelastic));
+  store(s, count, second_);
+  blend(s, count, before, 0);
   return true;
+}
+
+bool EnergyLimit::limit_unsolved(State &s, std::size_t count)
+{
+  store(s, count, first_);
+  const double limit = negligible(s, count);
+  for (std::size_t k = 0; k < count; ++k) remove_impulse(s, k);
+  store(s, count, second_);
+  load(s, count, first_, second_, 0);
+  if (work(s, count, &second_) <= limit) return false;
+  blend(s, count, &second_, limit);
+  return true;
+}
+
+bool EnergyLimit::solve(State &s, std::size_t count, bool newton, From from, const std::function<bool()> &solver)
+{
+  bool solved = true;
+  const auto watched = [&] { return solved = solver() && solved; };
+  if (newton) store(s, count, before_);
+  watched();
+  bool limited = newton && limit_restitution(s, count, from, watched);
+  if (!solved) limited |= limit_unsolved(s, count);
+  return limited;
 }
 
 }    // namespace nscd

@@ -1,4 +1,4 @@
-// Keeps Newton's law of impact with friction from making energy.
+// Keeps Newton's law of impact with friction, and frictional solves that were given up, from making energy.
 //
 // With e = e_t on all contacts the law takes energy, always (Leine & van de Wouw 2008): the impulses P and the
 // velocities u+ + e u- obey P.(u+ + e u-) <= 0. With e != e_t that bound is lost, and where one impact drives another
@@ -6,6 +6,9 @@
 // solutions lie in the convex cone of friction, and so does every blend of the two; the work of the contacts is a
 // quadratic function of the share. So a solution that would make energy is blended with the inelastic one until it
 // makes none.
+//
+// An unsolved frictional problem, given up after maxiter, can show any energy. It is blended with no impulses at all
+// until the contacts raise the kinetic energy above that of the free motion no more: they give way, but throw nothing.
 #pragma once
 
 #include "state.hpp"
@@ -19,8 +22,10 @@ class EnergyLimit {
   // Velocities that the work of the contacts is counted from: those at the start of the step, or of the solve.
   enum class From { step, solve };
 
-  // Solves for the first `count` contacts, twice if need be. Returns whether the solution had to be blended.
-  bool solve(State &state, std::size_t count, From from, const std::function<void()> &solver);
+  // Solves for the first `count` contacts. `newton`: their biases hold restitution e != e_t, so they may be solved twice;
+  // they then start from no impulses, or `from` is the step. `solver` returns whether it solved the problem.
+  // Returns whether the solution had to be blended.
+  bool solve(State &state, std::size_t count, bool newton, From from, const std::function<bool()> &solver);
 
  private:
   struct Motion {
@@ -31,12 +36,12 @@ class EnergyLimit {
   };
   void store(const State &state, std::size_t count, Motion &motion) const;
   void load(State &state, std::size_t count, const Motion &a, const Motion &b, double share_of_b) const;
-  double work(const State &state, std::size_t count, From from) const;
+  double work(const State &state, std::size_t count, const Motion *before) const;
+  void blend(State &state, std::size_t count, const Motion *before, double limit);
+  bool limit_restitution(State &state, std::size_t count, From from, const std::function<bool()> &solver);
+  bool limit_unsolved(State &state, std::size_t count);
 
-  Motion before_, elastic_, inelastic_;
+  Motion before_, first_, second_;
 };
-
-// Whether the settings let energy rise without this.
-inline bool can_make_energy(const Settings &s) { return s.frictional() && s.restitution != s.e_t; }
 
 }    // namespace nscd

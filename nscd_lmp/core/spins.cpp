@@ -45,7 +45,7 @@ NSCD_HOT void write_back_spins(const State &s)
 {
   for (int i = 0; i < s.grains.owned; ++i) {
     if (s.bodies[i][3] == 0) continue;
-    const Vec4 spin = s.friction.spins[i], contacts = spin - start_spin(s, i) - smooth_change(s, i);
+    const Vec4 spin = s.friction.spins[i], contacts = spin - (start_spin(s, i) + smooth_change(s, i));
     const double per_torque = change_per_torque(s, i);
     for (int d = 0; d < 3; ++d) {
       s.grains.omega[3 * std::size_t(i) + d] = spin[d] / s.grains.radius[i];

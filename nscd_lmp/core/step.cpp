@@ -154,16 +154,17 @@ void Step::ask_custom(std::size_t count)
   for (std::size_t k = 0; k < count; ++k) write_impulse(state_, k, &workspace_[k * width]);
 }
 
-// Where Newton's law of impact could make energy, the solution is kept from it.
+// With friction the solution is kept from making energy.
 void Step::solve_within_energy(const Part &part, EnergyLimit::From from)
 {
-  if (can_make_energy(settings_) && (part.e > 0 || part.e_t > 0))
-    energy_limited_ |= energy_limit_.solve(state_, part.contacts, from, [&] { solve_part(part); });
-  else
-    solve_part(part);
+  const bool newton = part.e != part.e_t;
+  const auto solve = [&] { return solve_part(part); };
+  if (state_.friction.model == Model::frictionless) solve();
+  else energy_limited_ |= energy_limit_.solve(state_, part.contacts, newton, from, solve);
 }
 
-void Step::solve_part(const Part &part)
+// Returns whether it is solved.
+bool Step::solve_part(const Part &part)
 {
   const auto start = Clock::now();
   const std::span contacts = std::span(state_.contacts).first(part.contacts);
@@ -182,8 +183,10 @@ void Step::solve_part(const Part &part)
     fail("solver ", settings_.solver,
          " diverged: the criterion is not a number; take rho or gamma closer to its default");
   report_.iterations += solved.iterations;
-  report_.criterion = solved.criterion;
+  // The criterion of the last solve, or of the one that failed.
+  if (report_.converged || !solved.converged) report_.criterion = solved.criterion;
   report_.converged = report_.converged && solved.converged;
+  return solved.converged;
 }
 
 // The contact set grows while the solution drives watched pairs together; that ends, for lack of pairs. Where impacts

@@ -75,7 +75,7 @@ class Step {
     double e, e_t;         // restitution that the biases contain
     double norm;           // of free velocities and biases
   };
-  void solve_part(const Part &part);
+  bool solve_part(const Part &part);
   void solve_within_energy(const Part &part, EnergyLimit::From from);
   void ask_custom(std::size_t count);
   double free_norm(std::size_t first, std::size_t last) const;

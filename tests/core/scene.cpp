@@ -7,7 +7,7 @@ int Scene::add(const Point &centre, double r, double m, const Point &velocity)
 {
   x.insert(x.end(), centre.begin(), centre.end());
   v.insert(v.end(), velocity.begin(), velocity.end());
-  f.insert(f.end(), 3, 0.0);
+  for (auto *zero : {&f, &omega, &torque}) zero->insert(zero->end(), 3, 0.0);
   radius.push_back(r);
   mass.push_back(m);
   tag.push_back(owned + 1);
@@ -34,6 +34,7 @@ void Scene::accelerate(const Point &a)
 {
   for (int i = 0; i < owned; ++i)
     for (int d = 0; d < 3; ++d) f[3 * i + d] = mass[i] * a[d];
+  torque.assign(torque.size(), 0.0);
 }
 
 // LAMMPS lists a pair with an image once under newton (which of the two sides is its choice), else twice.
@@ -67,6 +68,8 @@ nscd::Grains Scene::grains()
   g.x = x.data();
   g.v = v.data();
   g.f = f.data();
+  g.omega = omega.data();
+  g.torque = torque.data();
   g.radius = radius.data();
   g.mass = mass.data();
   g.tag = tag.data();

@@ -11,7 +11,7 @@
 using Point = std::array<double, 3>;
 
 struct Scene {
-  std::vector<double> x, v, f, radius, mass;
+  std::vector<double> x, v, f, omega, torque, radius, mass;
   std::vector<std::int32_t> tag;
   std::vector<int> mask;  // 1: moves, 2: an obstacle
   int owned = 0;
@@ -24,7 +24,7 @@ struct Scene {
   int add_obstacle(const Point &centre, double r);
   int add_image(int of, const Point &shift);
 
-  // Sets the forces of the next step: m a on every grain.
+  // Sets the forces of the next step: m a on every grain, no torques.
   void accelerate(const Point &a);
 
   // Half list: pairs of grains once, pairs with an image once (newton) or from both sides.

@@ -10,7 +10,7 @@ using nscd::Step;
 
 TEST(a_step_without_grains_does_nothing)
 {
-  for (const char *law : {"law moreau", "law gap"}) {
+  for (const char *law : {"law moreau", "law gap", "law gap friction 0.5 restitution 1", "law moreau stick e_t 1"}) {
     Step step(settings(law + box_walls(1, 1)));
     step.begin_run(true);
     for (int k = 0; k < 3; ++k) CHECK(step.advance({}, {.reach = 1}, 1e-3).contacts == 0);
@@ -23,7 +23,7 @@ TEST(a_step_without_grains_does_nothing)
 TEST(a_step_without_contacts_reports_none)
 {
   for (const auto &solver : nscd::solvers())
-    for (const char *law : {"law moreau ", "law gap "}) {
+    for (const char *law : {"law moreau ", "law gap ", "law gap friction 0.5 restitution 1 "}) {
       Scene scene;
       scene.add({0, 0, 0}, 1, 1, {1, 2, 3});
       Step step(settings(law + ("solver " + std::string(solver.name))));
@@ -85,6 +85,12 @@ TEST(a_long_chain_is_no_problem_for_law_gap)
     for (const char *e : {"0", "1"}) check_long_chain("law gap restitution " + std::string(e), backwards);
 }
 
+TEST(a_long_chain_with_friction_is_no_problem)
+{
+  for (const char *words : {"friction 0.5 law moreau restitution 0.5", "friction 0.5 law gap", "stick law gap e_t 0.5"})
+    check_long_chain(words, false);
+}
+
 // Free fall under gravity in a gap-closing crowd makes one grain after another change its update; the passes over
 // the contacts that this takes must not grow with the chain.
 TEST(a_long_chain_that_closes_up_is_no_problem_for_law_gap)
@@ -119,6 +125,28 @@ TEST(extreme_mass_ratios_keep_the_arrays_finite)
       }
       for (const double v : scene.v) CHECK(std::isfinite(v));
     }
+}
+
+// From coefficients that round to none to ones that round to stick, slip from the smallest number on: no overflow, and
+// the arrays stay finite.
+TEST(extreme_friction_keeps_the_arrays_finite)
+{
+  for (const auto &solver : nscd::solvers())
+    for (const char *mu : {"friction 1e-300", "friction 1e-12", "friction 1e6", "friction 1e300", "stick"})
+      for (const double slip : {0.0, 5e-324, 1e-160, 1e9}) {
+        Scene scene;
+        scene.add({5, 5, 1}, 1, 1e-12, {slip, 0, -1});
+        scene.add({5, 5, 3}, 1, 1e12, {0, slip, -1});
+        scene.omega[0] = slip;
+        const std::string words = std::string(mu) + " law moreau unconverged ignore solver " + std::string(solver.name);
+        Step step(settings(words + " wall plane 0 0 0 0 0 1"));
+        for (int k = 0; k < 3; ++k) {
+          scene.accelerate({});
+          scene.advance(step, 1e-12);
+        }
+        for (const double value : scene.v) CHECK(std::isfinite(value));
+        for (const double value : scene.omega) CHECK(std::isfinite(value));
+      }
 }
 
 // Nothing falls, nothing moves: v_free = 0, and the impulses of the step before are all there is.

@@ -1,28 +1,64 @@
 // Random crowded scenes for every law and solver: whatever comes, a step either keeps what it promises or
 // refuses and leaves the arrays alone. Most of its worth is under sanitizers.
 #include "check.hpp"
+#include "core/slides.hpp"
 #include "scene.hpp"
 
 #include <cmath>
 
 using nscd::Step;
 
+// Of spheres, with that of their spins: those change only where there is friction.
 static double kinetic_energy(const Scene &s)
 {
   double sum = 0;
   for (int i = 0; i < s.owned; ++i)
-    for (int d = 0; d < 3; ++d) sum += 0.5 * s.mass[i] * s.v[3 * i + d] * s.v[3 * i + d];
+    for (int d = 3 * i; d < 3 * i + 3; ++d)
+      sum += 0.5 * s.mass[i] * (s.v[d] * s.v[d] + 0.4 * std::pow(s.radius[i] * s.omega[d], 2));
   return sum;
 }
 
-static std::string random_keywords(Random &random, const nscd::SolverEntry &solver)
+static std::string random_keywords(Random &random, const nscd::SolverEntry &solver, double usual)
 {
   const char *restitutions[] = {"0", "0.5", "1"};
   std::string words = " restitution " + std::string(restitutions[int(random(0, 3))]);
   words += random() < 0.5 ? " warmstart yes" : " warmstart no";
   if (random() < 0.3)
-    words += " " + std::string(solver.parameter) + " " + std::to_string(solver.default_parameter * random(0.3, 2));
+    words += " " + std::string(solver.parameter) + " " + std::to_string(usual * random(0.3, 2));
   return words + " unconverged ignore maxiter 200 solver " + std::string(solver.name);
+}
+
+static std::string random_friction(Random &random)
+{
+  const char *coefficients[] = {" friction 0.1", " friction 0.5", " friction 3", " stick"};
+  const char *impacts[] = {"", " e_t 0.5", " e_t 1"};
+  return coefficients[int(random(0, 4))] + std::string(impacts[int(random(0, 3))]);
+}
+
+static bool in_tangent_planes(const nscd::State &s)
+{
+  bool inside = true;
+  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
+    const nscd::Contact &c = s.contacts[k];
+    const nscd::Vec4 p = nscd::tangential_impulse(s, k);
+    inside &= std::abs(nscd::dot(c.normal, p)) <= 1e-9 * (nscd::length(p) + std::abs(c.impulse));
+  }
+  return inside;
+}
+
+// Coulomb's cones, to what the tolerance leaves.
+static bool in_cones(const Step &step)
+{
+  const nscd::State &s = step.state();
+  bool inside = true;
+  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
+    const int j = s.infos[k].atom_j;
+    const double mu = j < 0 ? s.settings.wall_friction(-1 - j) : s.settings.friction;
+    const double slack = 1e-7 * s.contacts[k].w_inverse * double(s.contacts.size());
+    const double tangential = nscd::length(nscd::tangential_impulse(s, k)), normal = s.contacts[k].impulse;
+    inside &= tangential <= slack + (normal > -slack ? mu * (normal + slack) : 0);
+  }
+  return inside;
 }
 
 // What holds after any step: finite arrays, no tension in a solved step, the energy that contacts took accounted for.
@@ -32,49 +68,65 @@ static void check_step(const Scene &scene, const Step &step, double energy_befor
   for (const double value : scene.x) finite &= std::isfinite(value);
   for (const double value : scene.v) finite &= std::isfinite(value);
   for (const double value : scene.f) finite &= std::isfinite(value);
+  for (const double value : scene.omega) finite &= std::isfinite(value);
+  for (const double value : scene.torque) finite &= std::isfinite(value);
   for (const auto &c : step.state().contacts) pushes &= c.impulse >= -1e-7 * c.w_inverse * step.report().contacts;
   CHECK(finite);
   CHECK(pushes || !step.report().converged);
+  CHECK(in_cones(step) || !step.report().converged);
+  CHECK(in_tangent_planes(step.state()));
   CHECK(!step.report().converged || step.report().criterion.total() < step.settings().tol);
   const double taken = step.report().dissipated - dissipated_before;
   CHECK_NEAR(energy_before - kinetic_energy(scene), taken, 1e-12 * (energy_before + std::abs(taken)));
 }
 
-static void run_scene(std::uint64_t seed, const std::string &law, const nscd::SolverEntry &solver, int steps)
+static void run_scene(std::uint64_t seed, const std::string &law, const nscd::SolverEntry &solver, bool friction)
 {
   Random random(seed);
   Scene scene = random_scene(random, 40, 1, 0.12, 5);
+  std::string words = "law " + law + (friction ? random_friction(random) : "");
+  if (friction)
+    for (double &w : scene.omega) w = random(-50, 50);
   if (random() < 0.5) scene.mask[7] = scene.mask[20] = 2;
   for (const int i : {7, 20})
-    if (scene.mask[i] == 2) scene.v[3 * i] = scene.v[3 * i + 1] = scene.v[3 * i + 2] = 0;
-  Step step(settings("law " + law + random_keywords(random, solver) + box_walls(1, 1)));
+    for (int d = 3 * i; d < 3 * i + 3 && scene.mask[i] == 2; ++d) scene.v[d] = scene.omega[d] = 0;
+  const double usual = friction ? solver.default_with_friction : solver.default_parameter;
+  words += random_keywords(random, solver, usual) + box_walls(1, 1);
+  Step step(settings(words));
   const double dt = random(1e-4, 5e-3);
-  for (int k = 0; k < steps; ++k) {
+  for (int k = 0; k < 40; ++k) {
     const Scene before = scene;
     const double energy = kinetic_energy(scene), dissipated = step.report().dissipated;
     try {
-      scene.f.assign(scene.f.size(), 0);
+      scene.accelerate({});
       scene.advance(step, dt);
     } catch (const nscd::Error &error) {
-      // Law moreau lets grains overlap by dt v, and the smallest are a few dt v large.
-      CHECK(std::string(error.what()).find("more than") != std::string::npos);
-      CHECK(scene.x == before.x && scene.v == before.v);
+      // Law moreau lets grains overlap by dt v, and the smallest are a few dt v large. Where a law diverges grains get
+      // faster than any list can follow.
+      const std::string message = error.what();
+      const bool lost = message.find("contacts could be missed") != std::string::npos && !step.report().converged;
+      CHECK(lost || message.find("more than") != std::string::npos);
+      CHECK(scene.x == before.x && scene.v == before.v && scene.omega == before.omega);
       return;
     }
     check_step(scene, step, energy, dissipated);
   }
 }
 
-static void run_scenes(const std::string &law)
+static void run_scenes(const std::string &law, bool friction = false)
 {
   std::uint64_t seed = 1;
   for (const auto &solver : nscd::solvers())
-    for (int scene = 0; scene < 12; ++scene) run_scene(seed++, law, solver, 40);
+    for (int scene = 0; scene < 12; ++scene) run_scene(seed++, law, solver, friction);
 }
 
 TEST(random_scenes_hold_what_law_moreau_promises) { run_scenes("moreau"); }
 
 TEST(random_scenes_hold_what_law_gap_promises) { run_scenes("gap"); }
+
+TEST(random_scenes_with_friction_hold_what_law_moreau_promises) { run_scenes("moreau", true); }
+
+TEST(random_scenes_with_friction_hold_what_law_gap_promises) { run_scenes("gap", true); }
 
 // Images of all grains within 0.3 of the box's x faces; the box is periodic in x, with walls in y and z.
 static void refresh_images(Scene &scene)
@@ -96,7 +148,7 @@ TEST(periodic_random_scenes_do_not_depend_on_newton)
 {
   const std::string walls =
       " wall plane 0 0 0 0 1 0 wall plane 0 0 0 0 0 1 wall plane 0 1 0 0 -1 0 wall plane 0 0 1 0 0 -1";
-  for (const char *law : {"law moreau", "law gap"}) {
+  for (const char *law : {"law moreau", "law gap", "law moreau friction 0.5", "law gap friction 0.5"}) {
     Random one(99), two(99);
     Scene on = random_scene(one, 40, 1, 0.12, 2), off = random_scene(two, 40, 1, 0.12, 2);
     off.newton = false;

@@ -33,6 +33,7 @@ static void refuses(const std::string &keywords, const std::function<void(Scene 
     Step step(settings(law + keywords + " wall plane 0 0 0 0 0 1"));
     CHECK_ERROR(scene.advance(step, 0.01), part);
     CHECK(same_bits(scene.x, before.x) && same_bits(scene.v, before.v) && same_bits(scene.f, before.f));
+    CHECK(same_bits(scene.omega, before.omega) && same_bits(scene.torque, before.torque));
   }
 }
 
@@ -43,6 +44,19 @@ TEST(positions_velocities_and_forces_that_are_not_finite_are_refused)
       refuses("", [=](Scene &s) { s.x[at] = bad; }, "not a finite number");
       refuses("", [=](Scene &s) { s.v[at] = bad; }, "not a finite number");
       refuses("", [=](Scene &s) { s.f[at] = bad; }, "not a finite number");
+    }
+}
+
+// Of a grain in contact, of one in free flight and of an obstacle.
+TEST(angular_velocities_and_torques_that_are_not_finite_are_refused)
+{
+  const std::string part = " has an angular velocity or torque that is not a finite number";
+  for (const double bad : {double(NAN), double(INFINITY), -double(INFINITY)})
+    for (const int at : {5, 6}) {
+      const std::string message = "grain " + std::to_string(at / 3 + 1) + part;
+      refuses("friction 0.5", [=](Scene &s) { s.omega[at] = bad; }, message);
+      refuses("friction 0.5", [=](Scene &s) { s.torque[at] = bad; }, message);
+      refuses("friction 0.5", [=](Scene &s) { s.omega[at] = bad; s.mask[at / 3] = 2; }, message);
     }
 }
 
@@ -90,6 +104,7 @@ TEST(a_step_that_is_not_solved_is_an_error_if_asked)
 {
   const auto crowd = [](Scene &s) { s.x[3] = 1.99; s.v[3] = -1; };
   refuses("solver sal maxiter 1 unconverged error", crowd, "step not solved: criterion (42) is ");
+  refuses("solver sal maxiter 1 unconverged error friction 0.5", crowd, "step not solved: criterion (42) is ");
   Scene scene = three_grains();
   crowd(scene);
   Step step(settings("solver sal maxiter 1 unconverged ignore wall plane 0 0 0 0 0 1"));
@@ -115,6 +130,12 @@ TEST(impulses_of_a_custom_solver_that_are_not_numbers_are_refused)
   Step step(settings("law moreau wall plane 0 0 0 0 0 1"), [](const auto &, const auto &, auto p) { p[0] = NAN; });
   CHECK_ERROR(scene.advance(step, 0.01), "not a finite number");
   CHECK(same_bits(scene.x, before.x) && same_bits(scene.v, before.v));
+  for (const std::size_t component : {1, 2}) {
+    Step sliding(settings("law moreau friction 0.5 wall plane 0 0 0 0 0 1"),
+                 [=](const auto &, const auto &, auto p) { p[component] = INFINITY; });
+    CHECK_ERROR(scene.advance(sliding, 0.01), "not a finite number");
+    CHECK(same_bits(scene.omega, before.omega) && same_bits(scene.torque, before.torque));
+  }
 }
 
 TEST(timesteps_that_are_not_positive_are_refused)

@@ -98,6 +98,72 @@ TEST(a_step_refuses_bad_settings_at_once)
   CHECK_ERROR(nscd::Step(settings("restitution 2")), "restitution = 2");
 }
 
+TEST(friction_keywords_set_what_they_name)
+{
+  const nscd::Settings s = settings(
+      "friction 0.3 wall plane 0 0 0 0 0 1 friction 0.7 wall plane 0 0 9 0 0 -1 friction stick "
+      "wall plane 0 0 0 1 0 0 stick wall plane 9 0 0 -1 0 0 e_t 0.25 inertia sphere wall plane 0 0 0 0 1 0 friction 0");
+  CHECK(s.friction == 0.3 && s.e_t == 0.25 && s.inertia == nscd::Inertia::sphere && s.frictional());
+  const double expected[] = {0.7, nscd::stick, nscd::stick, 0.3, 0};
+  CHECK(s.walls.size() == 5);
+  for (std::size_t k = 0; k < 5; ++k) CHECK(s.wall_friction(k) == expected[k]);
+  CHECK(!s.walls[3].friction && s.walls[4].friction == 0.0);
+  for (const char *words : {"stick", "friction stick", "friction inf"})
+    CHECK(settings(words).friction == nscd::stick);
+  CHECK(settings("inertia disc").inertia == nscd::Inertia::disc && !settings("").inertia);
+}
+
+// Right behind a wall a `friction` is the wall's; anywhere else it is that of pairs, and of walls without their own.
+TEST(friction_belongs_to_the_wall_it_stands_behind)
+{
+  const nscd::Settings walls_own = checked("wall plane 0 0 0 0 0 1 friction 0.7");
+  CHECK(walls_own.friction == 0 && walls_own.frictional() && walls_own.wall_friction(0) == 0.7);
+  const nscd::Settings pairs = checked("wall plane 0 0 0 0 0 1 tol 1e-9 friction 0.7");
+  CHECK(pairs.friction == 0.7 && !pairs.walls[0].friction && pairs.wall_friction(0) == 0.7);
+  const nscd::Settings both = checked("wall plane 0 0 0 0 0 1 friction 0.7 friction 0.2");
+  CHECK(both.friction == 0.2 && both.wall_friction(0) == 0.7);
+  const nscd::Settings smooth = checked("friction 0.5 wall plane 0 0 0 0 0 1 friction 0");
+  CHECK(smooth.wall_friction(0) == 0 && smooth.frictional());
+}
+
+TEST(coefficients_of_zero_are_no_friction)
+{
+  CHECK(!checked("").frictional() && !checked("friction 0").frictional());
+  CHECK(!checked("friction 0 wall plane 0 0 0 0 0 1 friction 0").frictional());
+  CHECK(checked("friction 1e-300").frictional() && checked("stick").frictional());
+}
+
+TEST(bad_friction_is_refused_with_value_and_remedy)
+{
+  CHECK_ERROR(settings("friction"), "keyword friction needs a value");
+  CHECK_ERROR(settings("friction rough"), "keyword friction: 'rough' is not a number");
+  CHECK_ERROR(settings("wall plane 0 0 0 0 0 1 friction glue"), "keyword wall: 'glue' is not a number");
+  CHECK_ERROR(settings("wall plane 0 0 0 0 0 1 friction"), "keyword wall needs a value");
+  CHECK_ERROR(settings("stick 0.5"), "unknown keyword '0.5'");
+  CHECK_ERROR(settings("inertia ring"), "unknown inertia 'ring': choose one of sphere, disc");
+  CHECK_ERROR(checked("friction -0.5"), "friction = -0.5 must be >= 0, or `stick` for contacts that do not slip");
+  CHECK_ERROR(checked("friction nan"), "friction = nan must be >= 0");
+  CHECK_ERROR(checked("wall plane 0 0 0 0 0 1 wall plane 0 0 9 0 0 -1 friction -1"),
+              "wall 2: friction = -1 must be >= 0");
+  CHECK_ERROR(checked("friction 0.5 e_t 1.5"), "e_t = 1.5 is outside [0, 1]");
+  CHECK_ERROR(checked("friction 0.5 e_t nan"), "e_t = nan is outside [0, 1]");
+  CHECK_ERROR(checked("e_t 0.5"), "e_t = 0.5 has no effect without friction");
+  CHECK_ERROR(checked("friction 0 e_t 0.5 wall plane 0 0 0 0 0 1"), "e_t = 0.5 has no effect without friction");
+  CHECK_ERROR(checked("inertia sphere"), "inertia has no effect without friction");
+  CHECK_ERROR(checked("friction 0.5 inertia disc"), "inertia disc needs `dimension 2`");
+}
+
+TEST(defaults_of_rho_know_of_friction)
+{
+  for (const auto &solver : nscd::solvers()) {
+    const std::string words = "solver " + std::string(solver.name);
+    CHECK(nscd::solver_parameter(settings(words), solver) == solver.default_parameter);
+    CHECK(nscd::solver_parameter(settings(words + " friction 0.1"), solver) == solver.default_with_friction);
+    const std::string own = words + " friction 0.1 " + std::string(solver.parameter) + " 0.125";
+    CHECK(nscd::solver_parameter(settings(own), solver) == 0.125);
+  }
+}
+
 TEST(the_description_names_what_was_chosen)
 {
   const std::string words = "solver sal law moreau restitution 0.5 rho 0.3 wall plane 0 0 0 0 0 1";
@@ -116,6 +182,7 @@ TEST(report_columns_have_names_and_values)
   report.dissipated = 9;
   report.largest_overlap_ratio = 10;
   report.unconverged = 11;
-  const double expected[nscd::report_columns] = {1, 2, 15, 4, 5, 6, 7, 8, 9, 10, 11};
+  report.energy_limited = 12;
+  const double expected[nscd::report_columns] = {1, 2, 15, 4, 5, 6, 7, 8, 9, 10, 11, 12};
   for (int c = 0; c < nscd::report_columns; ++c) CHECK(nscd::report_column(report, c) == expected[c]);
 }
