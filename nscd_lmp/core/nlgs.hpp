@@ -164,22 +164,40 @@ SolverReport iterate(Problem &problem, const SolverOptions &options, std::size_t
   return report;
 }
 
-// Frictional sweeps, relaxed where they go to and fro.
+// Sees sweeps that go to and fro: the mean correction of the sweeps from s/2 to s is about that of the sweeps from s/4 to
+// s/2, s = 256, 512, ... Slow convergence, as 1/s or 1/sqrt(s), is left alone.
+class Relaxation {
+ public:
+  double share() const { return share_; }
+  void look(double corrected)
+  {
+    sum_ += corrected;
+    if (++sweeps_ < end_) return;
+    const double mean = sum_ / (end_ - begin_);
+    if (mean > no_better * mean_before_ && share_ > least_share) share_ /= 2;
+    mean_before_ = mean;
+    sum_ = 0;
+    begin_ = end_;
+    end_ *= 2;
+  }
+
+ private:
+  static constexpr double no_better = 0.9, least_share = 0.25;
+  double share_ = 1;
+  int sweeps_ = 0, begin_ = 0, end_ = 128;  // the window of sweeps that is averaged now
+  double sum_ = 0, mean_before_ = INFINITY;
+};
+
 template <class Law, class M>
 SolverReport iterate_with_friction(Problem &problem, const SolverOptions &options)
 {
   constexpr std::size_t carried = Law::carries_velocity ? carried_doubles<typename M::Tangent> : 0;
-  constexpr double no_better = 0.9, least_share = 0.25;
-  constexpr int first_look = 64;
-  double share = 1, before = INFINITY;
-  int sweeps = 0, look = first_look;
+  Relaxation relaxation;
   const auto relaxed = [&](Problem &p, double *velocities, double parameter) {
-    const double corrected = frictional_sweep<Law, M>(p, velocities, parameter, share);
-    if (++sweeps < look) return corrected / share;
-    if (corrected > no_better * before) share = std::max(least_share, share / 2);
-    before = corrected;
-    look *= 2;
-    return corrected / share;
+    const double share = relaxation.share();
+    const double corrected = frictional_sweep<Law, M>(p, velocities, parameter, share) / share;
+    relaxation.look(corrected);
+    return corrected;
   };
   return iterate(problem, options, carried, relaxed);
 }

@@ -16,7 +16,8 @@
 // stand for a sweep. rho only weighs p against v~ in the status: too small is deaf to v~, hence slow.
 // With friction plain Newton steps can alternate between two statuses forever, a quarter of all single contacts with
 // rho = 1/W_nn. So a slip is checked: if the new u_t points along t, friction would drive it, and the contact sticks
-// instead. Then every contact of tests/core/test_one_frictional_contact.cpp is solved.
+// instead; if it would pull (p_n <= 0), it opens, without which several contacts with mu > 3 run away together. Then every
+// contact of tests/core/test_one_frictional_contact.cpp is solved.
 #include "newton_slip.hpp"
 
 namespace nscd {
@@ -53,6 +54,7 @@ struct Ebp {
         own.ratio * (aligned * (mu * chi.p.n - along) + inner(h, change));
     const double dp = -(v.n * own.w_inverse + mu * slips) / (1 + mu * mu * own.ratio * aligned);
     const double normal = chi.p.n + dp;
+    if (!(normal > 0)) return opened(chi, v, own);
     const Tangent p_t = t * (mu * normal) + (chi.p.t - t * along) + change;
     const Tangent u_t = v.t + (p_t - chi.p.t) * own.wt;
     if (inner(u_t, t) > 0) return stuck(chi, v, own);  // friction would drive the slip
