@@ -7,13 +7,12 @@ from nscd_lmp import _core
 
 @dataclass(frozen=True)
 class Solver:
-    """A solver: keyword, legend title, and its parameter with defaults (multiples of 1/W_nn)."""
+    """A solver: keyword, legend title, and its parameter with default (multiple of 1/W_nn)."""
 
     name: str
     title: str
     parameter: str
     default: float
-    default_with_friction: float
 
 
 @dataclass(frozen=True)

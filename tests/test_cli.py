@@ -237,13 +237,7 @@ def test_info_names_build_doors_solvers_and_laws(capsys, monkeypatch):
     for name in (*nscd_lmp.SOLVERS, *nscd_lmp.LAWS, nscd_lmp.__version__):
         assert name in shown
     for solver in nscd_lmp.SOLVERS.values():
-        cells = (
-            solver.name,
-            solver.title,
-            solver.parameter,
-            f"{solver.default:g}",
-            f"{solver.default_with_friction:g}",
-        )
+        cells = (solver.name, solver.title, solver.parameter, f"{solver.default:g}")
         assert re.search(r" +│ +".join(map(re.escape, cells)) + " ", shown)
     assert "unknowns per contact: 1, with friction 3, in dimension 2 with friction 2" in shown
     assert max(len(line) for line in shown.splitlines()) <= 80

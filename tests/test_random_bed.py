@@ -22,7 +22,7 @@ def least_distance(system):
     x = A^T y / (1 - h y), the impulses are y / (1 - h y).
     """
     w = system.delassus()
-    free = system.velocity - w @ system.start
+    free = system.velocity
     # a factor of W by its eigenvectors; W may be singular
     values, vectors = np.linalg.eigh(w)
     root = (vectors * np.sqrt(np.maximum(values, 0))).T

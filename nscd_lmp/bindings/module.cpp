@@ -142,7 +142,6 @@ nb::list solver_table()
     row["title"] = std::string(s.title);
     row["parameter"] = std::string(s.parameter);
     row["default"] = s.default_parameter;
-    row["default_with_friction"] = s.default_with_friction;
     table.append(row);
   }
   return table;

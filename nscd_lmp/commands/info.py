@@ -66,13 +66,12 @@ def _add_doors(table: Table, lmp: Any) -> None:
 
 
 def solvers_table() -> Table:
-    """Return the registered solvers with the defaults of their parameter, without and with friction."""
+    """Return the registered solvers with the default of their parameter."""
     table = Table()
-    for title in ("solver", "local law", "parameter", "default x W_nn", "with friction"):
+    for title in ("solver", "local law", "parameter", "default x W_nn"):
         table.add_column(title)
     for solver in nscd_lmp.SOLVERS.values():
-        defaults = (f"{value:g}" for value in (solver.default, solver.default_with_friction))
-        table.add_row(solver.name, solver.title, solver.parameter, *defaults)
+        table.add_row(solver.name, solver.title, solver.parameter, f"{solver.default:g}")
     return table
 
 

@@ -75,7 +75,7 @@ struct Planar {
   };
   static constexpr int unknowns = 2;
 
-  static Vec4 tangent(const Vec4 &n) { return Vec4{-n[1], n[0], 0, 0}; }
+  NSCD_INLINE static Vec4 tangent(const Vec4 &n) { return Vec4{-n[1], n[0], 0, 0}; }
   NSCD_INLINE static double spin(const Vec4 &s) { return s[2]; }
   NSCD_INLINE static void set_spin(Vec4 &s, double spin) { s[2] = spin; }
   // n x p_t.
@@ -85,7 +85,8 @@ struct Planar {
     return n[0] * difference[1] - n[1] * difference[0] - spins;
   }
   NSCD_INLINE static Vec4 in_space(const Vec4 &n, double t) { return tangent(n) * t; }
-  static double from_space(const Vec4 &n, const Vec4 &t) { return dot(tangent(n), t); }
+  NSCD_INLINE static double tangential(const Vec4 &, double t) { return t; }
+  NSCD_INLINE static double from_space(const Vec4 &n, const Vec4 &t) { return dot(tangent(n), t); }
 };
 
 // No tangent frame: tangential vectors lie in space, perpendicular to n. Nothing can depend on how one turns a frame.
@@ -106,7 +107,9 @@ struct Spatial {
     return without_fourth(difference - n * normal - cross(spins, n));
   }
   NSCD_INLINE static Vec4 in_space(const Vec4 &, const Vec4 &t) { return t; }
-  static Vec4 from_space(const Vec4 &n, const Vec4 &t) { return without_fourth(t - n * dot(n, t)); }
+  // Without what round-off has left along the normal.
+  NSCD_INLINE static Vec4 tangential(const Vec4 &n, const Vec4 &t) { return t - n * dot(n, t); }
+  NSCD_INLINE static Vec4 from_space(const Vec4 &n, const Vec4 &t) { return without_fourth(t - n * dot(n, t)); }
 };
 static_assert(sizeof(Spatial::Slide) == 64);
 

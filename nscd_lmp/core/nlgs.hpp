@@ -122,7 +122,12 @@ NSCD_HOT double frictional_sweep(Problem &problem, [[maybe_unused]] double *carr
       local.p = part_way(Split<Tangent>{c.impulse, slide.impulse}, local.p, share);
       local.v = part_way(v, local.v, share);
     }
-    if constexpr (Law::carries_velocity) store_carried<Tangent>(carried + k * carried_doubles<Tangent>, local.v);
+    if constexpr (Law::carries_velocity) {
+      // A part along the normal would go from p_t to u_t and back, and grow.
+      local.p.t = M::tangential(c.normal, local.p.t);
+      local.v.t = M::tangential(c.normal, local.v.t);
+      store_carried<Tangent>(carried + k * carried_doubles<Tangent>, local.v);
+    }
     const double dp = local.p.n - c.impulse;
     const Tangent dpt = local.p.t - slide.impulse;
     c.impulse = local.p.n;

@@ -34,8 +34,7 @@ static void require_range(const char *what, double value, double lo, double hi)
 
 double solver_parameter(const Settings &s, const SolverEntry &solver)
 {
-  const double usual = s.frictional() ? solver.default_with_friction : solver.default_parameter;
-  return (solver.parameter == "rho" ? s.rho : s.gamma).value_or(usual);
+  return (solver.parameter == "rho" ? s.rho : s.gamma).value_or(solver.default_parameter);
 }
 
 static void check_parameter(const char *keyword, std::optional<double> value, const SolverEntry &solver)

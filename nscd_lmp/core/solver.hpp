@@ -30,7 +30,6 @@ struct SolverEntry {
   std::string_view parameter;   // "rho" or "gamma"
   double default_parameter;     // multiple of 1/W_nn
   SolverReport (*solve)(Problem &, const SolverOptions &);
-  double default_with_friction = default_parameter;
 };
 
 const std::vector<SolverEntry> &solvers();

@@ -61,14 +61,6 @@ NSCD_HOT void recall_all(State &s, const Memory &memory, std::size_t first)
 
 }    // namespace
 
-Vec4 turn_along(const Vec4 &p, const Vec4 &from, const Vec4 &to)
-{
-  const double cosine = dot(from, to);
-  if (cosine <= -1) return p;  // opposite: every half turn is as short
-  const Vec4 turned = p - (from + to) * (dot(p, to) / (1 + cosine));
-  return turned - to * dot(turned, to);
-}
-
 void WarmStart::remember(const State &s)
 {
   switch (s.friction.model) {

@@ -23,6 +23,12 @@ class WarmStart {
 };
 
 // The rotation that takes the unit vector `from` to `to` the shortest way, applied to p perpendicular to `from`.
-Vec4 turn_along(const Vec4 &p, const Vec4 &from, const Vec4 &to);
+NSCD_INLINE Vec4 turn_along(const Vec4 &p, const Vec4 &from, const Vec4 &to)
+{
+  const double cosine = dot(from, to);
+  if (cosine <= -1) return p;  // opposite: every half turn is as short
+  const Vec4 turned = p - (from + to) * (dot(p, to) / (1 + cosine));
+  return turned - to * dot(turned, to);
+}
 
 }    // namespace nscd

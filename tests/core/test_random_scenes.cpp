@@ -18,13 +18,13 @@ static double kinetic_energy(const Scene &s)
   return sum;
 }
 
-static std::string random_keywords(Random &random, const nscd::SolverEntry &solver, double usual)
+static std::string random_keywords(Random &random, const nscd::SolverEntry &solver)
 {
   const char *restitutions[] = {"0", "0.5", "1"};
   std::string words = " restitution " + std::string(restitutions[int(random(0, 3))]);
   words += random() < 0.5 ? " warmstart yes" : " warmstart no";
   if (random() < 0.3)
-    words += " " + std::string(solver.parameter) + " " + std::to_string(usual * random(0.3, 2));
+    words += " " + std::string(solver.parameter) + " " + std::to_string(solver.default_parameter * random(0.3, 2));
   return words + " unconverged ignore maxiter 200 solver " + std::string(solver.name);
 }
 
@@ -90,8 +90,7 @@ static void run_scene(std::uint64_t seed, const std::string &law, const nscd::So
   if (random() < 0.5) scene.mask[7] = scene.mask[20] = 2;
   for (const int i : {7, 20})
     for (int d = 3 * i; d < 3 * i + 3 && scene.mask[i] == 2; ++d) scene.v[d] = scene.omega[d] = 0;
-  const double usual = friction ? solver.default_with_friction : solver.default_parameter;
-  words += random_keywords(random, solver, usual) + box_walls(1, 1);
+  words += random_keywords(random, solver) + box_walls(1, 1);
   Step step(settings(words));
   const double dt = random(1e-4, 5e-3);
   for (int k = 0; k < 40; ++k) {

@@ -158,7 +158,7 @@ TEST(defaults_of_rho_know_of_friction)
   for (const auto &solver : nscd::solvers()) {
     const std::string words = "solver " + std::string(solver.name);
     CHECK(nscd::solver_parameter(settings(words), solver) == solver.default_parameter);
-    CHECK(nscd::solver_parameter(settings(words + " friction 0.1"), solver) == solver.default_with_friction);
+    CHECK(nscd::solver_parameter(settings(words + " friction 0.1"), solver) == solver.default_parameter);
     const std::string own = words + " friction 0.1 " + std::string(solver.parameter) + " 0.125";
     CHECK(nscd::solver_parameter(settings(own), solver) == 0.125);
   }

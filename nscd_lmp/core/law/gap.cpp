@@ -8,7 +8,9 @@
 //
 // Spheres and planes are convex, so the linearised gap is a lower bound: the step leaves no overlap but what
 // the solver's tolerance and contacts that were not foreseen leave. The recovery gives that back slowly: `cap`
-// is a tenth of the step's largest smooth velocity change, so that no overlap is ever thrown apart.
+// is a tenth of the step's largest smooth velocity change, so that no overlap is ever thrown apart. With friction a bed
+// between walls can be wedged: it cannot give anything back, and asking for it makes impulses grow without end. There an
+// overlap of 3e-5 of the smaller radius is left as it is.
 //
 // Restitution: impacts are resolved ahead of the contacts, one after another (impacts.hpp). Contacts that rest, and
 // contacts pressed without an impact, are inelastic.
@@ -31,6 +33,7 @@ namespace nscd {
 namespace {
 
 constexpr double recovery_cap = 0.1;   // of the step's largest smooth velocity change
+constexpr double tolerated_overlap = 3e-5;   // of the smaller radius, with friction
 constexpr double tolerances = 10;     // single contacts miss the mean criterion by about so much
 
 class Gap final : public Law {
@@ -45,6 +48,7 @@ class Gap final : public Law {
   void displace(State &s) override;
 
  private:
+  double gap_to_close(const State &s, const ContactInfo &info) const;
   double rate(const Contact &c) const;
   bool open_contact(const State &s, std::uint32_t k);
   void open_contacts(const State &s);
@@ -55,12 +59,20 @@ class Gap final : public Law {
   double slack_ = 0;             // m, overlap that the solver's tolerance leaves anyway
 };
 
+// With friction: 0 within the tolerated overlap.
+double Gap::gap_to_close(const State &s, const ContactInfo &info) const
+{
+  double smaller = s.spheres[info.atom_i].radius;
+  if (info.atom_j >= 0) smaller = std::min(smaller, s.spheres[info.atom_j].radius);
+  return info.gap < 0 ? std::min(0.0, info.gap + tolerated_overlap * smaller) : info.gap;
+}
+
 void Gap::set_bias(State &s, std::size_t first)
 {
   const double rate = 1 / s.dt, back = s.settings.recovery / s.dt;
   const double cap = recovery_cap * s.smooth_kick + s.settings.tol;
   for (std::size_t k = first; k < s.contacts.size(); ++k) {
-    const double gap = s.infos[k].gap;
+    const double gap = s.friction.model == Model::frictionless ? s.infos[k].gap : gap_to_close(s, s.infos[k]);
     s.contacts[k].bias = std::max(gap * (gap < 0 ? back : rate), -cap);
   }
 }

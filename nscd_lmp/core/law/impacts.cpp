@@ -63,11 +63,11 @@ std::size_t select_closing(State &s)
 
 void keep_impulses(State &s, std::size_t closing)
 {
-  s.impact_impulse.resize(s.contacts.size(), 0.0);
+  resize_closely(s.impact_impulse, s.contacts.size());
   for (std::size_t k = 0; k < closing; ++k) s.impact_impulse[k] += std::exchange(s.contacts[k].impulse, 0.0);
   with_friction(s.friction.model, [&]<class M>(M) {
     auto &kept = s.friction.impact_impulse;
-    kept.resize(s.contacts.size(), Vec4{});
+    resize_closely(kept, s.contacts.size());
     for (std::size_t k = 0; k < closing; ++k) {
       const auto impulse = std::exchange(s.friction.slides<M>()[k].impulse, typename M::Tangent{});
       kept[k] += M::in_space(s.contacts[k].normal, impulse);

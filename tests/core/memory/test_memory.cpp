@@ -161,13 +161,16 @@ TEST(a_contact_takes_at_most_200_bytes)
 }
 
 // Beside these the slides, 24 or 64 bytes, and longer entries of the warm start. Impacts under law gap, and e != e_t,
-// which could make energy, keep impulses a second time.
+// which could make energy, keep impulses a second time. A step that is given up is kept from making energy by copies of
+// the motion, of which there is one grain a contact here.
 TEST(a_contact_with_friction_takes_at_most_400_bytes_in_the_plane_and_600_in_space)
 {
   for (const auto &law : nscd::laws())
     for (const char *impacts : {"", " restitution 0.5"}) {
       const std::string words = "friction 0.5 solver ebp law " + std::string(law.name) + impacts;
-      CHECK(bytes_per_contact(words, 2) <= 400);
-      CHECK(bytes_per_contact(words, 3) <= 600);
+      CHECK(bytes_per_contact(words + " tol 1e3", 2) <= 400);
+      CHECK(bytes_per_contact(words + " tol 1e3", 3) <= 600);
+      CHECK(bytes_per_contact(words, 2) <= 640);
+      CHECK(bytes_per_contact(words, 3) <= 800);
     }
 }

@@ -1,0 +1,128 @@
+"""Beds of grains with friction that settled under their weight, in space and in the plane, and a step of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import coulomb
+import numpy as np
+import scenes
+from numpy.typing import NDArray
+from scenes import GRAVITY, Grains, box_walls, cloud, grains, harden, per_atom, state
+
+import nscd_lmp
+
+WIDTH = {2: 6.4, 3: 3.2}  # m, of the floor; boulders of 0.25 to 0.5 m, for which criterion (42) bounds velocities
+PAIRS, WALLS = 0.3, 0.8  # friction
+DT = 1e-3
+TOL = 1e-12
+
+
+def walls(dim: int, friction: Any = WALLS, sides: bool = True) -> list[nscd_lmp.Plane]:
+    """Return the floor, with `sides` the sides too."""
+    planes: list[tuple[Any, Any]]
+    if dim == 2:
+        planes = [((0, 0, 0), (0, 1, 0)), ((0, 0, 0), (1, 0, 0)), ((WIDTH[2], 0, 0), (-1, 0, 0))]
+    else:
+        planes = [(wall.point, wall.normal) for wall in box_walls(WIDTH[3])]
+    return [nscd_lmp.Plane(point, normal, friction) for point, normal in planes[: None if sides else 1]]
+
+
+def discs(n: int, seed: int) -> Grains:
+    """Return n grains at rest in the plane, one above another in six columns between the walls."""
+    random = np.random.default_rng(seed)
+    radius = random.uniform(0.25, 0.5, n)
+    cell = np.column_stack([np.arange(n) % 6, np.arange(n) // 6])
+    edge = np.array([WIDTH[2] / 6, 1.02])
+    x = (cell + 0.5) * edge + random.uniform(-1, 1, (n, 2)) * (edge / 2 - radius[:, None])
+    return grains(np.column_stack([x, np.zeros(n)]), radius)
+
+
+def settled(dim: int, n: int) -> Grains:
+    """Return n grains that fell into the box and came to rest, but for one or two that roll on."""
+    balls = cloud(n, (0.25, 0.5), WIDTH[3], seed=3) if dim == 3 else discs(n, seed=3)
+    sides, height = (-0.1, WIDTH[dim] + 0.1), (-0.1, 1.0 + float(balls.x.max()))
+    box = [sides, height if dim == 2 else sides, height]
+    lmp = scenes.start(balls, 1e-2, gravity=GRAVITY, vmax=20.0, planar=dim == 2, box=box)
+    # in haste: NLGS is slow on beds between rough walls
+    harden(lmp, law="gap", tol=1e-6, maxiter=100, friction=PAIRS, walls=walls(dim), unconverged="ignore")
+    lmp.command("run 500 post no")
+    balls.x, balls.v = state(lmp)
+    balls.omega = per_atom(lmp, "omega")
+    lmp.close()
+    return balls
+
+
+def shaken(balls: Grains, speed: float, dim: int, seed: int = 1) -> Grains:
+    """Return the grains with overlaps of 1 mm and random velocities and surface velocities of the speed, m/s.
+
+    The overlaps keep the contacts shut before law moreau looks.
+    """
+    random = np.random.default_rng(seed)
+    v, turn = random.normal(size=(2, *balls.x.shape)) * speed
+    if dim == 2:
+        v[:, 2] = turn[:, :2] = 0
+    return Grains(0.998 * balls.x, balls.radius, balls.mass, v, turn / balls.radius[:, None])
+
+
+def pile(dim: int, layers: int) -> Grains:
+    """Return a triangle of discs or a tetrahedron of spheres of radius 0.5 m that touch."""
+    x = []
+    for layer in range(layers):
+        n = layers - layer
+        if dim == 2:
+            x += [(a + layer / 2, 0.5 + layer * np.sqrt(3) / 2, 0) for a in range(n)]
+        else:
+            corner, height = layer * np.array([0.5, np.sqrt(3) / 6]), 0.5 + layer * np.sqrt(2 / 3)
+            x += [
+                (corner[0] + a + b / 2, corner[1] + b * np.sqrt(3) / 2, height) for a in range(n) for b in range(n - a)
+            ]
+    return grains(x, 0.5)
+
+
+def incline(start: Callable[..., Any], balls: Grains, dim: int, slope: float) -> Any:
+    """Return an instance with the grains on a floor that falls along x by the slope, as gravity sees it."""
+    lmp = start(balls, DT, gravity=GRAVITY, planar=dim == 2)
+    if slope:
+        lmp.command(f"fix slope all gravity {slope * GRAVITY} vector 1 0 0")
+    return lmp
+
+
+def one_step(start: Callable[..., Any], balls: Grains, dim: int, **options: Any) -> tuple[NDArray[np.float64], Any]:
+    """Return velocities and surface velocities r omega (n, 6) after a step, and what attach returned."""
+    lmp = start(balls, DT, gravity=GRAVITY, vmax=10.0, planar=dim == 2)
+    settings: dict[str, Any] = {"friction": PAIRS, "walls": walls(dim), "tol": TOL, "maxiter": 1000000} | options
+    attached = harden(lmp, **settings)
+    lmp.command("run 1")
+    return np.hstack([state(lmp)[1], per_atom(lmp, "omega") * balls.radius[:, None]]), attached
+
+
+def contact_problem(system: nscd_lmp.ContactSystem) -> coulomb.Problem:
+    """Return the system as the reference wants it."""
+    assert system.slip is not None
+    q = np.column_stack([system.velocity, system.slip])
+    return coulomb.problem(system.delassus(), q, system.friction, system.dimension)
+
+
+def reference(systems: list[Any]) -> Callable[[nscd_lmp.ContactSystem], NDArray[np.float64]]:
+    """Return a Python solver that keeps each system, the reference's view of it, and the solution it found."""
+
+    def solve(system: nscd_lmp.ContactSystem) -> NDArray[np.float64]:
+        given = contact_problem(system)
+        systems.append((system, given, coulomb.solve(given)))
+        return systems[-1][2]
+
+    return solve
+
+
+def tangential(rows: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Return the tangential impulses of contact rows, (n, 3)."""
+    return np.column_stack([rows["impulse_tx"], rows["impulse_ty"], rows["impulse_tz"]])
+
+
+def impulses(system: nscd_lmp.ContactSystem, rows: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Return the impulses of contact rows, (n, d) as the system has them; the contacts must be the same."""
+    np.testing.assert_array_equal(np.column_stack([rows["nx"], rows["ny"], rows["nz"]]), system.normal)
+    assert system.tangents is not None
+    return np.column_stack([rows["impulse"], np.einsum("kij,kj->ki", system.tangents, tangential(rows))])
