@@ -62,4 +62,5 @@ def test_input_runs(script: Path, tmp_path: Path) -> None:
 
 
 def test_inputs_are_there() -> None:
-    assert {"in.slide", "in.sedimentation", "in.incline"} <= {path.name for path in SCRIPTS}
+    scenes = "slide sedimentation incline repose hopper2d column_collapse drum"
+    assert {f"in.{scene}" for scene in scenes.split()} <= {path.name for path in SCRIPTS}

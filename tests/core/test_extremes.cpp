@@ -3,7 +3,7 @@
 #include "core/report.hpp"
 #include "scene.hpp"
 
-#include <chrono>
+#include <ctime>
 #include <cmath>
 
 using nscd::Step;
@@ -56,22 +56,22 @@ static Scene chain(int grains, bool backwards)
   return scene;
 }
 
-// 100,000 contacts: nothing may recurse, and nothing but the solver may take longer than in proportion. A second
-// is a hundred times what a step takes in proportion, under sanitizers too.
+// 100,000 contacts: nothing may recurse, and nothing may take longer than in proportion. That is seconds of processor time
+// at most, under sanitizers too; what grows with the square takes many minutes.
 static void check_long_chain(const std::string &keywords, bool backwards)
 {
   Scene scene = chain(100001, backwards);
   scene.v[0] = backwards ? -1 : 1;
   Step step(settings("maxiter 5 unconverged ignore " + keywords));
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   for (int k = 0; k < 2; ++k) {
     scene.accelerate({});
     scene.advance(step, 0.001);
   }
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  const double took = double(std::clock() - start) / CLOCKS_PER_SEC;
   CHECK(step.report().contacts == 100000);
   CHECK(std::isfinite(step.report().criterion.total()));
-  CHECK(took.count() < 2);
+  CHECK(took < 20);
 }
 
 TEST(a_long_chain_is_no_problem_for_law_moreau)
@@ -99,13 +99,13 @@ TEST(a_long_chain_that_closes_up_is_no_problem_for_law_gap)
     Scene scene = chain(100001, backwards);
     for (int i = 0; i < scene.owned; ++i) scene.v[3 * i] = -1e-3 * scene.x[3 * i] / scene.owned;
     Step step(settings("law gap maxiter 5 unconverged ignore"));
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock();
     for (int k = 0; k < 2; ++k) {
       scene.accelerate({});
       scene.advance(step, 0.1);
     }
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    CHECK(took.count() < 2);
+    const double took = double(std::clock() - start) / CLOCKS_PER_SEC;
+    CHECK(took < 20);
   }
 }
 
