@@ -1,7 +1,7 @@
 #include "criterion.hpp"
 
+#include "carried_velocity.hpp"
 #include "hot.hpp"
-#include "nlgs.hpp"
 
 #include <algorithm>
 #include <cmath>

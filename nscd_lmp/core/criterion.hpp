@@ -28,7 +28,7 @@ struct Criterion {
   double total() const { return motion + bipotential + penetration; }
 };
 
-// `local_velocity`: the (1 + e) v~ that a local solver carries, one a contact (as load_carried in nlgs.hpp reads it),
+// `local_velocity`: the (1 + e) v~ that a local solver carries, one a contact (with friction as carried_velocity.hpp lays them out),
 // or nullptr if it carries none.
 Criterion measure(const Problem &problem, const double *local_velocity = nullptr);
 

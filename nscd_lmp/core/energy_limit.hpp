@@ -22,8 +22,8 @@ class EnergyLimit {
   // Velocities that the work of the contacts is counted from: those at the start of the step, or of the solve.
   enum class From { step, solve };
 
-  // Solves for the first `count` contacts. `newton`: their biases hold restitution e != e_t, so they may be solved twice;
-  // they then start from no impulses, or `from` is the step. `solver` returns whether it solved the problem.
+  // Solves for the first `count` contacts. `newton`: their biases hold restitution e != e_t, so they may be solved
+  // twice; they then start from no impulses, or `from` is the step. `solver` returns whether it solved the problem.
   // Returns whether the solution had to be blended.
   bool solve(State &state, std::size_t count, bool newton, From from, const std::function<bool()> &solver);
 

@@ -6,18 +6,18 @@
 // needed grow with the length of force chains (about 0.93 N^2 a decade on a column of N) and with the mass
 // ratio of a heavy body on a light one. With friction the problem is not convex and no proof of convergence is known.
 //
-// Source: Jean & Moreau (1992), Jean (1999). Deviation: no relaxation, but for frictional sweeps that go to and fro. Exact
-// visits can: a grain that spins in a corner of friction mu is handed back and forth by a factor -mu^2 a sweep. Where a
-// sweep corrects as much as one half as early did, visits from then on do only a part of their step.
+// Source: Jean & Moreau (1992), Jean (1999). Deviation: no relaxation, but for frictional sweeps that go to and fro.
+// Exact visits can: a grain that spins in a corner of friction mu is handed back and forth by a factor -mu^2 a sweep
+// (Relaxation, below).
 #pragma once
 
-#include "solver.hpp"
+#include "carried_velocity.hpp"
 #include "hot.hpp"
+#include "solver.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 
 namespace nscd {
 
@@ -65,26 +65,6 @@ NSCD_HOT double sweep(Problem &problem, [[maybe_unused]] double *carried, double
     corrected += std::abs(dp) * (bi[3] + bj[3]);
   }
   return corrected;
-}
-
-// Carried velocities under friction lie one after another in the workspace, which knows only doubles.
-template <class Tangent>
-constexpr std::size_t carried_doubles = sizeof(Tangent) / sizeof(double) + 1;
-
-template <class Tangent>
-NSCD_INLINE Split<Tangent> load_carried(const double *at)
-{
-  Split<Tangent> v;
-  v.n = *at;
-  std::memcpy(&v.t, at + 1, sizeof(Tangent));
-  return v;
-}
-
-template <class Tangent>
-NSCD_INLINE void store_carried(double *at, const Split<Tangent> &v)
-{
-  *at = v.n;
-  std::memcpy(at + 1, &v.t, sizeof(Tangent));
 }
 
 template <class Tangent>
@@ -169,8 +149,9 @@ SolverReport iterate(Problem &problem, const SolverOptions &options, std::size_t
   return report;
 }
 
-// Sees sweeps that go to and fro: the mean correction of the sweeps from s/2 to s is about that of the sweeps from s/4 to
-// s/2, s = 256, 512, ... Slow convergence, as 1/s or 1/sqrt(s), is left alone.
+// Sees sweeps that go to and fro: the mean correction of the sweeps from s/2 to s is about that of the sweeps from s/4
+// to s/2, s = 256, 512, ... From then on visits do a part of their step. Slow convergence, as 1/s or 1/sqrt(s), is left
+// alone.
 class Relaxation {
  public:
   double share() const { return share_; }

@@ -2,6 +2,7 @@
 
 #include "detection.hpp"
 #include "error.hpp"
+#include "gather.hpp"
 #include "hot.hpp"
 #include "plane.hpp"
 #include "slides.hpp"
@@ -11,9 +12,6 @@
 #include <cmath>
 
 namespace nscd {
-
-// Impulses can make a grain faster than any was: watch pairs within this many moves of the fastest.
-constexpr double watched_moves = 4;
 
 using Clock = std::chrono::steady_clock;
 
@@ -49,9 +47,7 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
   state_.grains = grains;
   if (state_.dimension == 2) require_planar(state_);
   list_.inspect(state_, pairs);
-  gather();
-  if (state_.friction.model != Model::frictionless) gather_spins(state_);
-  const double speed = std::sqrt(largest_speed2_);
+  const double speed = gather(state_, prediction_, look_ahead_);
   list_.require_reach(state_, pairs, longest_move(speed), speed);
   detect(state_, pairs);
   solve();
@@ -59,65 +55,6 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
   write_back(pairs);
   report_.seconds_contacts = seconds(start, Clock::now()) - report_.seconds_solver;
   return report_;
-}
-
-// Free velocity (14) and predicted centre (18) of one grain.
-void Step::load_body(int i)
-{
-  const Grains &g = state_.grains;
-  const double *x = g.x + 3 * std::size_t(i), *v = g.v + 3 * std::size_t(i), *f = g.f + 3 * std::size_t(i);
-  const bool moves = g.mask[i] & g.group;
-  const double inverse_mass = moves ? 1 / g.mass[i] : 0;
-  const Vec4 before{v[0], v[1], v[2], 0};
-  const Vec4 kick = Vec4{f[0], f[1], f[2], 0} * (state_.dt * g.force_to_acceleration * inverse_mass);
-  const Vec4 free = before + kick;
-  const Vec4 centre = Vec4{x[0], x[1], x[2], 0} + before * (moves ? state_.dt * prediction_ : 0.0);
-  const double before2 = dot(before, before), free2 = dot(free, free), speed2 = std::max(before2, free2);
-  largest_kick2_ = std::max(largest_kick2_, dot(kick, kick));
-  largest_speed2_ = std::max(largest_speed2_, speed2);
-  state_.spheres[i] = {centre, g.radius[i], state_.dt * look_ahead_ * std::sqrt(speed2)};
-  state_.bodies[i] = free + Vec4{0, 0, 0, inverse_mass};
-  // One test for all that is wrong: a not-a-number fails every comparison.
-  const bool fit = dot(centre, centre) + before2 + free2 < INFINITY && g.radius[i] > 0 && g.radius[i] < INFINITY &&
-      inverse_mass >= 0 && inverse_mass < INFINITY && (inverse_mass > 0) == moves;
-  if (!fit) refuse(i);
-}
-
-void Step::refuse(int i) const
-{
-  const Grains &g = state_.grains;
-  if (!(g.radius[i] > 0 && std::isfinite(g.radius[i])))
-    fail("grain ", g.tag[i], " has radius ", g.radius[i], ": nscd needs spheres of finite radius > 0");
-  if ((g.mask[i] & g.group) && !(g.mass[i] > 0 && std::isfinite(g.mass[i])))
-    fail("grain ", g.tag[i], " has mass ", g.mass[i], ": every grain of the group needs a finite mass > 0");
-  fail("grain ", g.tag[i], " has a position, velocity or force that is not a finite number");
-}
-
-NSCD_HOT void Step::gather()
-{
-  const Grains &grains = state_.grains;
-  const int owned = grains.owned, all = owned + grains.ghosts;
-  state_.spheres.resize(all);
-  state_.bodies.resize(owned + obstacle_copies);
-  state_.displacement.resize(owned);
-  largest_kick2_ = largest_speed2_ = 0;
-  for (int i = 0; i < owned; ++i) load_body(i);
-  std::fill(state_.bodies.begin() + owned, state_.bodies.end(), Body{});
-  state_.smooth_kick = std::sqrt(largest_kick2_);
-  state_.watch = watched_moves * state_.dt * look_ahead_ * std::sqrt(largest_speed2_);
-  place_images();
-}
-
-// Images take their grain's velocity, so ghosts need none of their own.
-void Step::place_images()
-{
-  const Grains &g = state_.grains;
-  for (int j = g.owned; j < g.owned + g.ghosts; ++j) {
-    const int i = state_.owner[j];
-    const double *xi = g.x + 3 * std::size_t(i), *xj = g.x + 3 * std::size_t(j);
-    const Vec4 shift{xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2], 0};
-    state_.spheres[j] = {state_.spheres[i].centre + shift, g.radius[i], state_.spheres[i].reach};
-  }
 }
 
 // ||v + bias||_2 over the contacts [first, last), with the bodies as they are, m/s.

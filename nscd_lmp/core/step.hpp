@@ -58,10 +58,6 @@ class Step {
   bool wants_rebuild() const { return wants_rebuild_; }
 
  private:
-  void gather();
-  void load_body(int i);
-  void refuse(int i) const;
-  void place_images();
   // How far around q_k contacts are sought, m, for a grain of this speed.
   double longest_move(double speed) const { return state_.dt * speed * (look_ahead_ + prediction_); }
   void start_contacts(std::size_t first);
@@ -100,8 +96,6 @@ class Step {
   AlignedVector<Vec4> free_spins_;
   bool energy_limited_ = false;    // in this step
   double free_norm_ = 0;           // of the step's contacts, m/s
-  double largest_kick2_ = 0;       // (m/s)^2, of the smooth forces
-  double largest_speed2_ = 0;      // (m/s)^2, before or after them
   bool wants_rebuild_ = false;
 };
 

@@ -1,0 +1,95 @@
+#include "gather.hpp"
+
+#include "error.hpp"
+#include "hot.hpp"
+#include "spins.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nscd {
+
+namespace {
+
+// Impulses can make a grain faster than any was: watch pairs within this many moves of the fastest.
+constexpr double watched_moves = 4;
+
+struct Search {
+  double prediction, look_ahead;
+};
+
+// Squares of speeds, (m/s)^2: what the smooth forces change, and before or after them.
+struct Largest {
+  double kick2 = 0, speed2 = 0;
+};
+
+[[noreturn]] void refuse(const State &s, int i)
+{
+  const Grains &g = s.grains;
+  if (!(g.radius[i] > 0 && std::isfinite(g.radius[i])))
+    fail("grain ", g.tag[i], " has radius ", g.radius[i], ": nscd needs spheres of finite radius > 0");
+  if ((g.mask[i] & g.group) && !(g.mass[i] > 0 && std::isfinite(g.mass[i])))
+    fail("grain ", g.tag[i], " has mass ", g.mass[i], ": every grain of the group needs a finite mass > 0");
+  fail("grain ", g.tag[i], " has a position, velocity or force that is not a finite number");
+}
+
+// Free velocity (14) and predicted centre (18) of one grain.
+NSCD_INLINE void load_body(State &s, int i, const Search &search, Largest &largest)
+{
+  const Grains &g = s.grains;
+  const double *x = g.x + 3 * std::size_t(i), *v = g.v + 3 * std::size_t(i), *f = g.f + 3 * std::size_t(i);
+  const bool moves = g.mask[i] & g.group;
+  const double inverse_mass = moves ? 1 / g.mass[i] : 0;
+  const Vec4 before{v[0], v[1], v[2], 0};
+  const Vec4 kick = Vec4{f[0], f[1], f[2], 0} * (s.dt * g.force_to_acceleration * inverse_mass);
+  const Vec4 free = before + kick;
+  const Vec4 centre = Vec4{x[0], x[1], x[2], 0} + before * (moves ? s.dt * search.prediction : 0.0);
+  const double before2 = dot(before, before), free2 = dot(free, free), speed2 = std::max(before2, free2);
+  largest.kick2 = std::max(largest.kick2, dot(kick, kick));
+  largest.speed2 = std::max(largest.speed2, speed2);
+  s.spheres[i] = {centre, g.radius[i], s.dt * search.look_ahead * std::sqrt(speed2)};
+  s.bodies[i] = free + Vec4{0, 0, 0, inverse_mass};
+  // One test for all that is wrong: a not-a-number fails every comparison.
+  const bool fit = dot(centre, centre) + before2 + free2 < INFINITY && g.radius[i] > 0 && g.radius[i] < INFINITY &&
+      inverse_mass >= 0 && inverse_mass < INFINITY && (inverse_mass > 0) == moves;
+  if (!fit) refuse(s, i);
+}
+
+// Images take their grain's velocity, so ghosts need none of their own.
+void place_images(State &s)
+{
+  const Grains &g = s.grains;
+  for (int j = g.owned; j < g.owned + g.ghosts; ++j) {
+    const int i = s.owner[j];
+    const double *xi = g.x + 3 * std::size_t(i), *xj = g.x + 3 * std::size_t(j);
+    const Vec4 shift{xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2], 0};
+    s.spheres[j] = {s.spheres[i].centre + shift, g.radius[i], s.spheres[i].reach};
+  }
+}
+
+NSCD_HOT Largest load_bodies(State &s, const Search &search)
+{
+  Largest largest;
+  for (int i = 0; i < s.grains.owned; ++i) load_body(s, i, search, largest);
+  return largest;
+}
+
+}    // namespace
+
+double gather(State &s, double prediction, double look_ahead)
+{
+  const int owned = s.grains.owned;
+  s.spheres.resize(owned + s.grains.ghosts);
+  s.bodies.resize(owned + obstacle_copies);
+  s.displacement.resize(owned);
+  const Largest largest = load_bodies(s, {prediction, look_ahead});
+  std::fill(s.bodies.begin() + owned, s.bodies.end(), Body{});
+  s.smooth_kick = std::sqrt(largest.kick2);
+  const double speed = std::sqrt(largest.speed2);
+  s.watch = watched_moves * s.dt * look_ahead * speed;
+  place_images(s);
+  if (s.friction.model != Model::frictionless) gather_spins(s);
+  return speed;
+}
+
+}    // namespace nscd
