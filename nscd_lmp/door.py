@@ -98,7 +98,8 @@ def attach(
     theta : float
         Of ``law moreau``.
     recovery : float
-        Of ``law gap``: share of an overlap given back per step.
+        Of ``law gap``: share of an overlap given back per step, with friction of what is beyond 3e-5 of the smaller
+        radius.
     inertia : str, optional
         Moment of inertia of a grain, ``"sphere"`` (2/5 m r^2) or ``"disc"`` (1/2 m r^2, in dimension 2). None: disc
         in dimension 2, sphere otherwise.
@@ -123,12 +124,10 @@ def attach(
         the positions and velocities are then those at the end of the last good step.
     """
     keywords = _keywords(
-        law=law, restitution=restitution, tol=tol, maxiter=maxiter, warmstart=warmstart, rho=rho, gamma=gamma,
-        theta=theta, recovery=recovery, unconverged=unconverged, inertia=inertia,
+        law=law, restitution=restitution, friction=friction, e_t=e_t or None, tol=tol, maxiter=maxiter,
+        warmstart=warmstart, rho=rho, gamma=gamma, theta=theta, recovery=recovery, unconverged=unconverged,
+        inertia=inertia,
     )  # fmt: skip
-    keywords += ["friction", friction if isinstance(friction, str) else repr(float(friction))]
-    if e_t:
-        keywords += ["e_t", repr(float(e_t))]
     custom = None
     if callable(solver):
         custom = _with_contact_system(solver)
@@ -145,6 +144,8 @@ def _keywords(**values: Any) -> list[str]:
     for keyword, value in values.items():
         if value is None:
             continue
+        if isinstance(value, np.generic):
+            value = value.item()
         if isinstance(value, bool):
             value = "yes" if value else "no"
         words += [keyword, value if isinstance(value, str) else repr(value)]
@@ -180,6 +181,11 @@ class _Door:
         self.warn = unconverged == "warn"
         self.remeasure = False
         self.inspection = Inspection(lmp)
+        if any(fix.id == FIX_ID for fix in self.inspection.fixes()):
+            raise _core.NscdError(
+                "another attach() is at work on this LAMMPS object: detach() it first, and attach to the union of"
+                " the groups"
+            )
         pair_style = self.inspection.pair_style()
         cutoff = self.inspection.neighbor_cutoff()
         addresses = {name: ctypes.cast(getattr(lmp.lib, name), ctypes.c_void_p).value for name in ADDRESSES}

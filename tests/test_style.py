@@ -35,3 +35,14 @@ def test_types_of_the_package_hold(tmp_path: Path) -> None:
 
 def test_types_of_the_repository_hold(tmp_path: Path) -> None:
     python_module("mypy", "--cache-dir", str(tmp_path))
+
+
+def test_lines_of_cpp_files_have_120_characters_at_most() -> None:
+    long = [
+        f"{path.relative_to(ROOT)}:{number}"
+        for folder in ("nscd_lmp", "tests/core")
+        for path in sorted((ROOT / folder).rglob("*.[ch]pp"))
+        for number, line in enumerate(path.read_text().splitlines(), 1)
+        if len(line) > 120
+    ]
+    assert long == []

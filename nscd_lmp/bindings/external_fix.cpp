@@ -101,7 +101,7 @@ Grains ExternalFix::grains()
   g.f = *library_.per_atom<double *>("f");
   if (step_.settings().frictional()) {
     g.omega = *library_.per_atom<double *>("omega");
-    g.torque = *library_.per_atom<double *>("torque");
+    if (double **torque = library_.per_atom<double *>("torque")) g.torque = *torque;
   }
   g.radius = library_.per_atom<double>("radius");
   g.tag = library_.per_atom<std::int32_t>("id");

@@ -46,13 +46,6 @@ inline std::uint64_t contact_key(const State &s, const Candidate &c)
        ": remove one of them, or take a smaller timestep if they were apart before");
 }
 
-// Velocity of atom i at the start of the step, m/s.
-NSCD_INLINE Vec4 start_velocity(const State &s, int i)
-{
-  const double *v = s.grains.v + 3 * std::size_t(i);
-  return Vec4{v[0], v[1], v[2], 0};
-}
-
 // Fills contact number k. Impulse and bias are left 0. Raises Error for an overlap beyond the smaller radius.
 NSCD_INLINE void place_contact(State &s, std::size_t k, const Candidate &c)
 {

@@ -53,6 +53,8 @@ NSCD_HOT Sums frictional(const Problem &problem, const double *local_velocity)
     const auto bare = velocity<M>(c, problem.bodies.data(), problem.sliding.spins);
     const Split<Tangent> v{bare.n + c.bias, bare.t + bias(slide)};
     sum.add_normal(c, v.n);
+    // What pushes and separates: v p of small grains is too small a number to see it, and friction depends on p.
+    sum.of.bipotential += std::max(0.0, std::min(v.n, c.impulse / c.w_inverse));
     const double radius = coulomb_radius(slide.mu, c.impulse);
     if (std::isinf(slide.mu)) sum.of.bipotential += std::abs(v.n * c.impulse);
     else sum.of.bipotential += std::abs(v.n * c.impulse + inner(v.t, slide.impulse) + radius * length(v.t));

@@ -7,9 +7,10 @@
 //
 // Deviation: (28) has the indicator of p in K_mu inside the bipotential, infinite for a tensile impulse. EBP,
 // EAL and PDAS (gamma != 1) can pass through p < 0 with v~ = 0, which (42) as printed would accept; the
-// indicator enters eps_bc as the velocity W~_nn |min(0, p)| instead. With friction, eps_bc also takes the residual of
-// Coulomb's law in velocities, W_tt |p_t - proj(p_t - u_t/W_tt, B(0, mu p_n))|: the bipotential of small grains is too
-// small a number to see that they slip where they should stick, and it is infinite for stick.
+// indicator enters eps_bc as the velocity W~_nn |min(0, p)| instead. With friction, eps_bc also takes residuals in
+// velocities: max(0, min(v, W_nn p)) where a contact pushes and separates, and W_tt |p_t - proj(p_t - u_t/W_tt,
+// B(0, mu p_n))| where Coulomb's law does not hold. The bipotential of small grains is too small a number to see either
+// of them, and it is infinite for stick.
 //
 // (42) adds m/s and N m, so it means nothing across scales. Reported beside it is the natural map used in
 // the FCLIB comparisons (Acary, Bremond, Huber 2018), in velocities:
@@ -28,8 +29,8 @@ struct Criterion {
   double total() const { return motion + bipotential + penetration; }
 };
 
-// `local_velocity`: the (1 + e) v~ that a local solver carries, one a contact (with friction as carried_velocity.hpp lays them out),
-// or nullptr if it carries none.
+// `local_velocity`: the (1 + e) v~ that a local solver carries, one a contact (with friction as carried_velocity.hpp
+// lays them out), or nullptr if it carries none.
 Criterion measure(const Problem &problem, const double *local_velocity = nullptr);
 
 }    // namespace nscd

@@ -109,7 +109,7 @@ struct Spatial {
   NSCD_INLINE static Vec4 in_space(const Vec4 &, const Vec4 &t) { return t; }
   // Without what round-off has left along the normal.
   NSCD_INLINE static Vec4 tangential(const Vec4 &n, const Vec4 &t) { return t - n * dot(n, t); }
-  NSCD_INLINE static Vec4 from_space(const Vec4 &n, const Vec4 &t) { return without_fourth(t - n * dot(n, t)); }
+  NSCD_INLINE static Vec4 from_space(const Vec4 &n, const Vec4 &t) { return tangential(n, t); }
 };
 static_assert(sizeof(Spatial::Slide) == 64);
 

@@ -19,7 +19,7 @@ class Words {
   bool skip(const std::string &word)
   {
     const bool there = !done() && words_[next_] == word;
-    next_ += there;
+    if (there) keyword_ += " " + words_[next_++];
     return there;
   }
   const std::string &keyword() { return keyword_ = words_[next_++]; }
@@ -31,13 +31,13 @@ class Words {
   }
 
   template <class Number>
-  Number number()
+  Number number(const char *wanted = std::is_integral_v<Number> ? "a whole number" : "a number")
   {
     const std::string &text = word();
     Number value{};
     const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (problem != std::errc() || end != text.data() + text.size())
-      fail("keyword ", keyword_, ": '", text, "' is not ", std::is_integral_v<Number> ? "a whole number" : "a number");
+      fail("keyword ", keyword_, ": '", text, "' is not ", wanted);
     return value;
   }
 
@@ -55,7 +55,10 @@ class Words {
   std::string keyword_;
 };
 
-double read_friction(Words &words) { return words.skip("stick") ? stick : words.number<double>(); }
+double read_friction(Words &words)
+{
+  return words.skip("stick") ? stick : words.number<double>("a number, nor stick");
+}
 
 Inertia read_inertia(Words &words)
 {

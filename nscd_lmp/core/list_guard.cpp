@@ -72,15 +72,15 @@ double ListGuard::farthest_moved(const State &s) const
 void ListGuard::require_reach(const State &s, const PairList &pairs, double ahead, double speed) const
 {
   if (pairs.reach < 0)
-    fail("contacts could be missed: pair cutoff plus neighbor skin are ", -pairs.reach, " less than the largest diameter: "
-         "raise the cutoff of the pair style to the largest diameter plus 2 dt v of the fastest grain (", 2 * ahead,
-         " now)");
+    fail("contacts could be missed: pair cutoff plus neighbor skin are ", -pairs.reach,
+         " less than the largest diameter: raise the cutoff of the pair style to the largest diameter plus 2 dt v of ",
+         "the fastest grain (", 2 * ahead, " now)");
   const double moved = farthest_moved(s), nearer = 2 * (moved + ahead);
   if (nearer > pairs.reach * (1 + 1e-12))
-    fail("contacts could be missed: two grains can be ", nearer, " nearer than when the neighbor list was built (moved ",
-         moved, " each, and dt v = ", ahead, " with v = ", speed, "), but it holds pairs only up to ", pairs.reach,
-         " apart: raise the cutoff of the pair style by 2 dt v of the fastest grain, or use a larger neighbor skin or a "
-         "smaller timestep");
+    fail("contacts could be missed: two grains can be ", nearer,
+         " nearer than when the neighbor list was built (moved ", moved, " each, and dt v = ", ahead, " with v = ",
+         speed, "), but it holds pairs only up to ", pairs.reach, " apart: raise the cutoff of the pair style by ",
+         "2 dt v of the fastest grain, or use a larger neighbor skin or a smaller timestep");
 }
 
 bool ListGuard::too_old(const State &s, const PairList &pairs, double ahead) const

@@ -73,6 +73,24 @@ NSCD_INLINE Split<Tangent> part_way(const Split<Tangent> &from, const Split<Tang
   return {from.n + share * (to.n - from.n), from.t + (to.t - from.t) * share};
 }
 
+// A visit of a frictional contact that does `share` of its step.
+template <class Law, class M, class Local>
+NSCD_INLINE Local visit_contact(const Contact &c, const Local &now, const Split<typename M::Tangent> &v,
+                                const OwnBlock &own, double parameter, double share)
+{
+  Local next = Law::visit(now, v, own, parameter);
+  if (share != 1) {
+    next.p = part_way(now.p, next.p, share);
+    next.v = part_way(v, next.v, share);
+  }
+  if constexpr (Law::carries_velocity) {
+    // A part along the normal would go from p_t to u_t and back, and grow.
+    next.p.t = M::tangential(c.normal, next.p.t);
+    next.v.t = M::tangential(c.normal, next.v.t);
+  }
+  return next;
+}
+
 // One sweep with friction; M is Planar or Spatial. Visits do `share` of their step.
 template <class Law, class M>
 NSCD_HOT double frictional_sweep(Problem &problem, [[maybe_unused]] double *carried, double parameter, double share)
@@ -80,40 +98,26 @@ NSCD_HOT double frictional_sweep(Problem &problem, [[maybe_unused]] double *carr
   using Tangent = typename M::Tangent;
   Body *const bodies = problem.bodies.data();
   Vec4 *const spins = problem.sliding.spins;
-  Contact *const contacts = problem.contacts.data();
   auto *const slides = problem.sliding.template slides<M>();
   const double response = problem.sliding.spin_response, ratio = 1 + response, ratio_inverse = 1 / ratio;
-  const std::size_t n = problem.contacts.size();
   Vec4 corrected{};
-  for (std::size_t k = 0; k < n; ++k) {
-    Contact &c = contacts[k];
+  for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
+    Contact &c = problem.contacts[k];
     auto &slide = slides[k];
     const Body bi = bodies[c.i], bj = bodies[c.j];
     const Tangent si = M::spin(spins[c.i]), sj = M::spin(spins[c.j]);
     const Vec4 difference = bi - bj;
-    const double vn = dot(c.normal, difference);
+    const double vn = dot(c.normal, difference), w = bi[3] + bj[3];
     const Split<Tangent> v{vn + c.bias, M::slip(c.normal, difference, vn, si + sj) + bias(slide)};
-    FrictionalLocal<Tangent> local{{c.impulse, slide.impulse}, {}};
-    if constexpr (Law::carries_velocity) local.v = load_carried<Tangent>(carried + k * carried_doubles<Tangent>);
-    const double w = bi[3] + bj[3];
     const OwnBlock own{w, w * ratio, c.w_inverse, c.w_inverse * ratio_inverse, ratio, slide.mu};
-    local = Law::visit(local, v, own, parameter);
-    if (share != 1) {
-      local.p = part_way(Split<Tangent>{c.impulse, slide.impulse}, local.p, share);
-      local.v = part_way(v, local.v, share);
-    }
-    if constexpr (Law::carries_velocity) {
-      // A part along the normal would go from p_t to u_t and back, and grow.
-      local.p.t = M::tangential(c.normal, local.p.t);
-      local.v.t = M::tangential(c.normal, local.v.t);
-      store_carried<Tangent>(carried + k * carried_doubles<Tangent>, local.v);
-    }
-    const double dp = local.p.n - c.impulse;
-    const Tangent dpt = local.p.t - slide.impulse;
-    c.impulse = local.p.n;
-    slide.impulse = local.p.t;
-    const Vec4 push = c.normal * dp + M::in_space(c.normal, dpt);
-    const Tangent turn = M::turned(c.normal, dpt) * response;
+    FrictionalLocal<Tangent> now{{c.impulse, slide.impulse}, {}};
+    if constexpr (Law::carries_velocity) now.v = load_carried<Tangent>(carried + k * carried_doubles<Tangent>);
+    const FrictionalLocal<Tangent> next = visit_contact<Law, M>(c, now, v, own, parameter, share);
+    if constexpr (Law::carries_velocity) store_carried<Tangent>(carried + k * carried_doubles<Tangent>, next.v);
+    c.impulse = next.p.n;
+    slide.impulse = next.p.t;
+    const Tangent slid = next.p.t - now.p.t, turn = M::turned(c.normal, slid) * response;
+    const Vec4 push = c.normal * (next.p.n - now.p.n) + M::in_space(c.normal, slid);
     bodies[c.i] = bi + push * bi[3];
     bodies[c.j] = bj - push * bj[3];
     M::set_spin(spins[c.i], si - turn * bi[3]);

@@ -27,7 +27,7 @@ double report_column(const StepReport &r, int column)
 
 int contact_columns(const Settings &settings)
 {
-  return int(contact_column_names.size()) - (settings.frictional() ? 0 : 3);
+  return int(contact_column_names.size()) - (settings.frictional() ? 0 : tangential_columns);
 }
 
 void fill_contact_rows(const State &s, double *row)

@@ -50,7 +50,7 @@ using Totals = BasicTotals<double>;
 // Rows of `dump local`: a wall contact has -1 - wall (walls count from 0) as its second tag.
 constexpr std::array<std::string_view, 13> contact_column_names{
     "tag_i", "tag_j", "x", "y", "z", "nx", "ny", "nz", "gap", "impulse", "impulse_tx", "impulse_ty", "impulse_tz"};
-// The tangential impulse is there with friction only.
+constexpr int tangential_columns = 3;  // the last ones, with friction only
 int contact_columns(const Settings &settings);
 
 // Writes contacts x contact_columns doubles: the contacts of the step at q_{k+1}, m and N s.

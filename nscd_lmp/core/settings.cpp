@@ -51,10 +51,16 @@ bool Settings::frictional() const
   return friction > 0 || std::any_of(walls.begin(), walls.end(), [](const Plane &w) { return w.friction > 0.0; });
 }
 
+// mu^2 must leave room beside 1 in a double.
+constexpr double largest_coefficient = 1e6;
+
 static void check_coefficient(const std::string &whose, double mu)
 {
   if (!(mu >= 0))
     fail(whose, "friction = ", mu, " must be >= 0, or `stick` for contacts that do not slip");
+  if (mu > largest_coefficient && mu != stick)
+    fail(whose, "friction = ", mu, " is more than ", largest_coefficient,
+         ": use `stick` for contacts that do not slip");
 }
 
 static void check_friction(const Settings &s)

@@ -1,8 +1,6 @@
 // The tangential side of a step's contacts, over the whole state. Nothing here does anything in a frictionless scene.
 #pragma once
 
-#include "error.hpp"
-#include "problem.hpp"
 #include "spins.hpp"
 #include "state.hpp"
 
@@ -56,8 +54,7 @@ NSCD_INLINE typename M::Tangent slip_at_start(const State &s, std::size_t k)
   Vec4 difference{}, spins{};
   for (const int b : {c.i, c.j}) {
     if (b >= s.grains.owned) continue;
-    const double *v = s.grains.v + 3 * std::size_t(b);
-    difference += Vec4{v[0], v[1], v[2], 0} * (b == c.i ? 1.0 : -1.0);
+    difference += start_velocity(s, b) * (b == c.i ? 1.0 : -1.0);
     spins += start_spin(s, b);
   }
   return M::slip(c.normal, difference, dot(c.normal, difference), M::spin(spins));

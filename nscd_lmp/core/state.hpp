@@ -4,6 +4,7 @@
 #include "storage.hpp"
 #include "contact.hpp"
 #include "friction.hpp"
+#include "hot.hpp"
 #include "settings.hpp"
 #include "views.hpp"
 
@@ -65,6 +66,13 @@ struct State {
   double watch = 0;                    // surface distance within which pairs are watched, m
   double smooth_kick = 0;              // largest |dt f / m| of the step, m/s
 };
+
+// Velocity of atom i at the start of the step, m/s.
+NSCD_INLINE Vec4 start_velocity(const State &s, int i)
+{
+  const double *v = s.grains.v + 3 * std::size_t(i);
+  return Vec4{v[0], v[1], v[2], 0};
+}
 
 // Walls are bodies of infinite mass. Several copies, used in turn: consecutive wall contacts then do not wait
 // for each other's store to the same body.

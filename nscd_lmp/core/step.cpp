@@ -91,12 +91,13 @@ void Step::ask_custom(std::size_t count)
   for (std::size_t k = 0; k < count; ++k) write_impulse(state_, k, &workspace_[k * width]);
 }
 
-// With friction the solution is kept from making energy.
+// With friction the solution is kept from making energy; what a custom solver answers is taken as it is.
 void Step::solve_within_energy(const Part &part, EnergyLimit::From from)
 {
   const bool newton = part.e != part.e_t;
   const auto solve = [&] { return solve_part(part); };
-  if (state_.friction.model == Model::frictionless) solve();
+  const bool as_it_is = custom_ || state_.friction.model == Model::frictionless;
+  if (as_it_is) solve();
   else energy_limited_ |= energy_limit_.solve(state_, part.contacts, newton, from, solve);
 }
 
@@ -171,6 +172,8 @@ bool Step::promote()
 void Step::resolve_impacts_first(bool again)
 {
   if (again) {
+    report_.converged = true;  // of the pass that is given up
+    energy_limited_ = false;
     state_.bodies = free_bodies_;
     state_.friction.spins = free_spins_;
     place_slides(state_, 0);

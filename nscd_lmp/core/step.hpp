@@ -24,7 +24,7 @@ struct StepReport {
   double dissipated_in_step = 0;     // J, by contacts
   double dissipated = 0;             // J, by contacts since begin_run
   long unconverged = 0;              // steps since begin_run
-  long energy_limited = 0;           // steps since begin_run in which restitution had to be reduced
+  long energy_limited = 0;           // steps since begin_run in which impulses were scaled back, since they made energy
   bool converged = true;
   double seconds_contacts = 0;       // detection, biases, update
   double seconds_solver = 0;

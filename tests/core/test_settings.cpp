@@ -137,9 +137,11 @@ TEST(bad_friction_is_refused_with_value_and_remedy)
 {
   CHECK_ERROR(settings("friction"), "keyword friction needs a value");
   CHECK_ERROR(settings("friction rough"), "keyword friction: 'rough' is not a number");
-  CHECK_ERROR(settings("wall plane 0 0 0 0 0 1 friction glue"), "keyword wall: 'glue' is not a number");
-  CHECK_ERROR(settings("wall plane 0 0 0 0 0 1 friction"), "keyword wall needs a value");
+  CHECK_ERROR(settings("wall plane 0 0 0 0 0 1 friction glue"),
+              "keyword wall friction: 'glue' is not a number, nor stick");
+  CHECK_ERROR(settings("wall plane 0 0 0 0 0 1 friction"), "keyword wall friction needs a value");
   CHECK_ERROR(settings("stick 0.5"), "unknown keyword '0.5'");
+  CHECK_ERROR(nscd::checked(settings("friction 1e7")), "is more than 1e+06: use `stick`");
   CHECK_ERROR(settings("inertia ring"), "unknown inertia 'ring': choose one of sphere, disc");
   CHECK_ERROR(checked("friction -0.5"), "friction = -0.5 must be >= 0, or `stick` for contacts that do not slip");
   CHECK_ERROR(checked("friction nan"), "friction = nan must be >= 0");

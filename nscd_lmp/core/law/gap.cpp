@@ -9,8 +9,8 @@
 // Spheres and planes are convex, so the linearised gap is a lower bound: the step leaves no overlap but what
 // the solver's tolerance and contacts that were not foreseen leave. The recovery gives that back slowly: `cap`
 // is a tenth of the step's largest smooth velocity change, so that no overlap is ever thrown apart. With friction a bed
-// between walls can be wedged: it cannot give anything back, and asking for it makes impulses grow without end. There an
-// overlap of 3e-5 of the smaller radius is left as it is.
+// between walls can be wedged: it cannot give anything back, and asking for it makes impulses grow without end. So
+// there an overlap of 3e-5 of the smaller radius is left as it is.
 //
 // Restitution: impacts are resolved ahead of the contacts, one after another (impacts.hpp). Contacts that rest, and
 // contacts pressed without an impact, are inelastic.

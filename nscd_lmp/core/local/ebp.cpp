@@ -5,7 +5,8 @@
 //   tau in the polar cone of K_mu (open):  p <- 0,   v~ <- velocity without this impulse
 //   tau in K_mu (stick):                   v~ <- 0,  p <- p - W~^-1 v~_m
 //   otherwise (slip), t = tau_t/|tau_t|, h = u_t/|u_t| of chi:
-//     p_t.t <- mu p_n,   v_n + mu (h + t).u_t <- 0,   and a Newton step across t;   where that leaves u_t along t: stick
+//     p_t.t <- mu p_n,   v_n + mu (h + t).u_t <- 0,   and a Newton step across t
+//     where that leaves u_t along t: stick;   where it leaves p_n <= 0: open
 // The paper prints tau without the term mu |u_t|, which would be the convex relaxation; see SBP. It gives A_c and B_c
 // without friction; with friction, in three dimensions, they are derived in docs/friction.md.
 //
@@ -16,8 +17,8 @@
 // stand for a sweep. rho only weighs p against v~ in the status: too small is deaf to v~, hence slow.
 // With friction plain Newton steps can alternate between two statuses forever, a quarter of all single contacts with
 // rho = 1/W_nn. So a slip is checked: if the new u_t points along t, friction would drive it, and the contact sticks
-// instead; if it would pull (p_n <= 0), it opens, without which several contacts with mu > 3 run away together. Then every
-// contact of tests/core/test_one_frictional_contact.cpp is solved.
+// instead; if it would pull (p_n <= 0), it opens, without which several contacts with mu > 3 run away together. Then
+// every contact of tests/core/test_one_frictional_contact.cpp is solved.
 #include "newton_slip.hpp"
 
 namespace nscd {

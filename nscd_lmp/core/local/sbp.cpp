@@ -36,7 +36,7 @@ struct Sbp {
     }
     const double tau = now.p.n - step * (v.n + mu * length(v.t));
     const double tangential = length(tau_t);
-    if (tangential <= mu * tau) return {.p = {tau, tau_t}};
+    if (tau > 0 && tangential <= mu * tau) return {.p = {tau, tau_t}};
     const double normal = (tau + mu * tangential) / (1 + mu * mu);
     if (!(normal > 0)) return {};
     return {.p = {normal, tau_t * (mu * normal / tangential)}};
