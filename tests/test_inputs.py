@@ -17,13 +17,21 @@ STEPS = 200
 SHORT = {"n": "50", "steps": str(STEPS), "every": "50", "contacts": "dump.contacts"}
 
 
+def other_law(defaults: dict[str, str]) -> str:
+    """Return the contact law that the script does not take by itself."""
+    return "moreau" if defaults["law"] == "gap" else "gap"
+
+
 def variants(script: Path) -> list[dict[str, str]]:
     """Return the variables to run a script with: short, with its own contact law and with the other one."""
     defaults = dict(re.findall(r"^variable\s+(\w+)\s+index\s+(\S+)", script.read_text(), re.M))
     short = {name: value for name, value in SHORT.items() if name in defaults}
     if "law" not in defaults:
         return [short]
-    return [short, short | {"law": "moreau" if defaults["law"] == "gap" else "gap"}]
+    if "friction" in defaults:
+        frictionless = short | {"friction": "0"} | ({"ground": "0"} if "ground" in defaults else {})
+        return [short, short | {"law": other_law(defaults)}, frictionless]
+    return [short, short | {"law": other_law(defaults)}]
 
 
 def run(script: Path, folder: Path, variables: dict[str, str]) -> str:

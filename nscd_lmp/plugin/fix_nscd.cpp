@@ -83,11 +83,11 @@ void FixNscd::check_integrators()
 {
   for (Fix *other : modify->get_fix_list()) {
     if (other == this || !other->time_integrate) continue;
-    if (utils::strmatch(other->style, "^nscd"))
-      error->all(FLERR,
-                 "Fix nscd {}: fix {} is a second fix nscd, and the grains of one would be infinitely heavy to the "
-                 "other: use one fix for the union of their groups",
-                 id, other->id);
+    if (utils::strmatch(other->style, "^nscd") && comm->me == 0)
+      error->warning(FLERR,
+                     "Fix nscd {}: fix {} is a second fix nscd, and the grains of one are infinitely heavy to the "
+                     "other: where they can meet, use one fix for the union of their groups",
+                     id, other->id);
     for (int i = 0; i < atom->nlocal; ++i)
       if ((atom->mask[i] & groupbit) && (atom->mask[i] & other->groupbit))
         error->all(FLERR,
