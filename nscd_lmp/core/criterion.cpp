@@ -14,7 +14,7 @@ struct Sums {
   Criterion of;
   double natural = 0;  // (m/s)^2
 
-  // The normal direction; returns the velocity, bias included.
+  // What is as without friction; v includes the bias.
   NSCD_INLINE void add_normal(const Contact &c, double v)
   {
     const double w = 1 / c.w_inverse;

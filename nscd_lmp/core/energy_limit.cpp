@@ -9,8 +9,6 @@ namespace nscd {
 
 namespace {
 
-constexpr double tolerances = 10;  // single contacts miss the solver's tolerance by about so much
-
 // Work that is the solver's own error, J.
 double negligible(const State &s, std::size_t count)
 {
@@ -73,8 +71,9 @@ double EnergyLimit::work(const State &s, std::size_t count, const Motion *before
     for (std::size_t k = 0; k < count; ++k) {
       const Contact &c = s.contacts[k];
       const auto after = velocity<M>(c, s.bodies.data(), s.friction.spins.data());
-      Split<typename M::Tangent> first{s.infos[k].speed_before, slip_at_start<M>(s, k)};
-      if (before) first = velocity<M>(c, before->bodies.data(), before->spins.data());
+      using Velocity = Split<typename M::Tangent>;
+      const Velocity first = before ? velocity<M>(c, before->bodies.data(), before->spins.data())
+                                    : Velocity{s.infos[k].speed_before, slip_at_start<M>(s, k)};
       sum += c.impulse * (first.n + after.n) + inner(s.friction.slides<M>()[k].impulse, first.t + after.t);
     }
   });

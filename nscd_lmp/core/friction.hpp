@@ -1,7 +1,7 @@
 // What a contact has beside its normal direction where there is friction: tangential velocity and impulse, spins.
 //
-// A scene is frictionless (one unknown per contact, no spins), planar (two) or spatial (three); chosen once, when a
-// run begins. Frictionless contacts stay one cache line, and nothing below is touched for them.
+// A scene is frictionless (one unknown per contact, no spins), planar (two) or spatial (three); chosen once, when
+// the step is made. Frictionless contacts stay one cache line, and nothing below is touched for them.
 //
 // The spin of a grain is kept as its surface velocity s = r omega (m/s). Then no radius is needed at a contact,
 //   u_t = (v_i - v_j)_t - (s_i + s_j) x n

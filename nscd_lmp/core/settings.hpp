@@ -50,6 +50,9 @@ struct Settings {
 // Reads `keyword value ...` as fix nscd takes them; raises Error for an unknown keyword or a value that is no number.
 void parse_keywords(Settings &settings, const std::vector<std::string> &words);
 
+// A single contact of a solved step misses the mean criterion by about so many times `tol`.
+constexpr double tolerances = 10;
+
 struct SolverEntry;
 // rho or gamma, whichever the solver takes, as a multiple of 1/W_nn.
 double solver_parameter(const Settings &settings, const SolverEntry &solver);

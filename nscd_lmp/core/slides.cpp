@@ -37,13 +37,15 @@ void place_slides(State &s, std::size_t first)
 namespace {
 
 template <class M>
-NSCD_HOT double slip_norm2_of(const State &s, std::size_t first, std::size_t last)
+NSCD_HOT double velocity_norm2_of(const State &s, std::size_t first, std::size_t last)
 {
   const auto &slides = s.friction.slides<M>();
   double sum = 0;
   for (std::size_t k = first; k < last; ++k) {
-    const auto u = velocity<M>(s.contacts[k], s.bodies.data(), s.friction.spins.data()).t + bias(slides[k]);
-    sum += inner(u, u);
+    const auto u = velocity<M>(s.contacts[k], s.bodies.data(), s.friction.spins.data());
+    const auto normal = u.n + s.contacts[k].bias;
+    const auto slip = u.t + bias(slides[k]);
+    sum += normal * normal + inner(slip, slip);
   }
   return sum;
 }
@@ -71,11 +73,15 @@ void set_tangential_bias(State &s, std::size_t first, double e_t)
   });
 }
 
-double slip_norm2(const State &s, std::size_t first, std::size_t last)
+double velocity_norm(const State &s, std::size_t first, std::size_t last)
 {
   double sum = 0;
-  with_friction(s.friction.model, [&]<class M>(M) { sum = slip_norm2_of<M>(s, first, last); });
-  return sum;
+  with_friction(s.friction.model, [&]<class M>(M) { sum = velocity_norm2_of<M>(s, first, last); });
+  for (std::size_t k = first; k < last && s.friction.model == Model::frictionless; ++k) {
+    const double v = normal_velocity(s.contacts[k], s.bodies.data()) + s.contacts[k].bias;
+    sum += v * v;
+  }
+  return std::sqrt(sum);
 }
 
 double tangential_work(const State &s)

@@ -1,4 +1,4 @@
-// The tangential side of a step's contacts, over the whole state. Nothing here does anything in a frictionless scene.
+// The tangential side of a step's contacts, over the whole state.
 #pragma once
 
 #include "spins.hpp"
@@ -19,8 +19,9 @@ void place_slides(State &state, std::size_t first);
 // Biases e_t u_t of the contacts from `first` on, u_t at the start of the step.
 void set_tangential_bias(State &state, std::size_t first, double e_t);
 
-// Sum of (u_t + bias)^2 over the contacts [first, last), with the bodies as they are, (m/s)^2.
-double slip_norm2(const State &state, std::size_t first, std::size_t last);
+// 2-norm of the velocities, biases included, of the contacts [first, last), with the bodies as they are, m/s. In a
+// frictionless scene these are the normal ones.
+double velocity_norm(const State &state, std::size_t first, std::size_t last);
 
 // Sum of p_t (u_t^k + u_t^{k+1}) over the contacts, J: twice what friction gives to the grains.
 double tangential_work(const State &state);

@@ -57,24 +57,13 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
   return report_;
 }
 
-// ||v + bias||_2 over the contacts [first, last), with the bodies as they are, m/s.
-double Step::free_norm(std::size_t first, std::size_t last) const
-{
-  double norm = slip_norm2(state_, first, last);
-  for (std::size_t k = first; k < last; ++k) {
-    const Contact &c = state_.contacts[k];
-    const double v = normal_velocity(c, state_.bodies.data()) + c.bias;
-    norm += v * v;
-  }
-  return std::sqrt(norm);
-}
-
 // Biases and start impulses of the contacts from `first` on.
 NSCD_HOT void Step::start_contacts(std::size_t first)
 {
   law_->set_bias(state_, first);
   set_tangential_bias(state_, first, law_->tangential_restitution_in_bias(settings_));
-  free_norm_ = std::hypot(first == 0 ? 0 : free_norm_, free_norm(first, state_.contacts.size()));
+  const double added = velocity_norm(state_, first, state_.contacts.size());
+  free_norm_ = std::hypot(first == 0 ? 0 : free_norm_, added);
   if (settings_.warmstart) memory_.recall(state_, first);
 }
 
@@ -180,7 +169,8 @@ void Step::resolve_impacts_first(bool again)
   }
   for (Contact &c : state_.contacts) c.impulse = 0;
   law_->impacts(state_, [this](std::size_t count) {
-    solve_within_energy({count, settings_.restitution, settings_.e_t, free_norm(0, count)}, EnergyLimit::From::solve);
+    const double norm = velocity_norm(state_, 0, count);
+    solve_within_energy({count, settings_.restitution, settings_.e_t, norm}, EnergyLimit::From::solve);
   });
 }
 

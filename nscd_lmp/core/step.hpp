@@ -74,7 +74,6 @@ class Step {
   bool solve_part(const Part &part);
   void solve_within_energy(const Part &part, EnergyLimit::From from);
   void ask_custom(std::size_t count);
-  double free_norm(std::size_t first, std::size_t last) const;
   void finish();
   void tally_contacts();
   void write_back(const PairList &pairs);

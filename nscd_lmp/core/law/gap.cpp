@@ -34,7 +34,6 @@ namespace {
 
 constexpr double recovery_cap = 0.1;   // of the step's largest smooth velocity change
 constexpr double tolerated_overlap = 3e-5;   // of the smaller radius, with friction
-constexpr double tolerances = 10;     // single contacts miss the mean criterion by about so much
 
 class Gap final : public Law {
  public:

@@ -10,7 +10,6 @@ namespace nscd {
 namespace {
 
 constexpr double resting_kicks = 2;    // slower than so many smooth velocity changes of the step: resting
-constexpr double tolerances = 10;      // slower than so many times the solver's tolerance: resting
 constexpr int max_rounds = 50;
 
 // Adds sign times half the smooth velocity change of the step.
