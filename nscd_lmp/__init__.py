@@ -8,10 +8,10 @@ from mpi4py import MPI as _MPI  # noqa: F401  loads libmpi before LAMMPS looks f
 
 from nscd_lmp._core import NscdError
 from nscd_lmp.attached import Attached
-from nscd_lmp.choices import LAWS, SOLVERS
+from nscd_lmp.choices import LAWS, LOCAL_LAWS, SOLVERS
 from nscd_lmp.contact_system import ContactSystem
 from nscd_lmp.door import attach
 from nscd_lmp.walls import Plane
 
 __version__ = "0.1.0"
-__all__ = ["LAWS", "SOLVERS", "Attached", "ContactSystem", "NscdError", "Plane", "attach"]
+__all__ = ["LAWS", "LOCAL_LAWS", "SOLVERS", "Attached", "ContactSystem", "NscdError", "Plane", "attach"]

@@ -7,10 +7,14 @@ from nscd_lmp import _core
 
 @dataclass(frozen=True)
 class Solver:
-    """A solver: keyword, legend title, and its parameter with default (multiple of 1/W_nn)."""
+    """A solver: keyword, legend title, and its parameter with default (multiple of 1/W_nn), or ``""`` for none.
+
+    `kind` is ``"local law"`` (of nonlinear Gauss-Seidel) or ``"global"`` (all contacts at once).
+    """
 
     name: str
     title: str
+    kind: str
     parameter: str
     default: float
 
@@ -24,4 +28,5 @@ class Law:
 
 
 SOLVERS: dict[str, Solver] = {row["name"]: Solver(**row) for row in _core.solvers()}
+LOCAL_LAWS: dict[str, Solver] = {name: solver for name, solver in SOLVERS.items() if solver.kind == "local law"}
 LAWS: dict[str, Law] = {row["name"]: Law(**row) for row in _core.laws()}

@@ -1,7 +1,9 @@
 // nscd_lmp._core: the core for Python.
 #include "../core/error.hpp"
 #include "../core/slides.hpp"
+#include "arrays.hpp"
 #include "external_fix.hpp"
+#include "problems.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -14,22 +16,10 @@
 namespace nb = nanobind;
 using namespace nb::literals;
 using nscd::ExternalFix;
+using nscd::make_array;
 using nscd::State;
 
 namespace {
-
-// A new numpy array of `count` rows of `columns` values (columns 0: one-dimensional), filled by value(row, column).
-template <class T, class Value>
-nb::ndarray<nb::numpy, T> make_array(std::size_t count, std::size_t columns, Value value)
-{
-  const std::size_t width = std::max<std::size_t>(columns, 1);
-  T *data = new T[std::max<std::size_t>(count * width, 1)];
-  nb::capsule owner(data, [](void *p) noexcept { delete[] static_cast<T *>(p); });
-  for (std::size_t r = 0; r < count; ++r)
-    for (std::size_t c = 0; c < width; ++c) data[r * width + c] = value(r, c);
-  const std::size_t shape[2] = {count, columns};
-  return nb::ndarray<nb::numpy, T>(data, columns ? 2 : 1, shape, owner);
-}
 
 int body_index(const State &s, int body) { return body < s.grains.owned && s.bodies[body][3] > 0 ? body : -1; }
 
@@ -140,6 +130,7 @@ nb::list solver_table()
     nb::dict row;
     row["name"] = std::string(s.name);
     row["title"] = std::string(s.title);
+    row["kind"] = std::string(s.kind);
     row["parameter"] = std::string(s.parameter);
     row["default"] = s.default_parameter;
     table.append(row);
@@ -202,7 +193,8 @@ NB_MODULE(_core, m)
   nb::set_leak_warnings(false);
   nb::exception<nscd::Error>(m, "NscdError", PyExc_RuntimeError);
   bind_external_fix(m);
-  m.def("solvers", &solver_table, "Solvers in legend order: name, title, parameter, default (multiple of 1/W_nn).");
+  nscd::bind_problems(m);
+  m.def("solvers", &solver_table, "Solvers in legend order: name, title, kind, parameter, default (multiple of 1/W_nn).");
   m.def("laws", &law_table, "Contact laws: name, title.");
   m.attr("REPORT_COLUMNS") = names(nscd::report_column_names);
   m.attr("TOTALS_COLUMNS") = names(nscd::totals_column_names);

@@ -1,4 +1,5 @@
-// The velocities that EBP and EAL carry from visit to visit under friction, in a solver's workspace of doubles.
+// The velocities that EBP and EAL carry from visit to visit under friction, in a solver's workspace.
+// Solvers with momentum keep the impulses of the sweep before in the same layout.
 #pragma once
 
 #include "friction.hpp"

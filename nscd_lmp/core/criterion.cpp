@@ -1,6 +1,7 @@
 #include "criterion.hpp"
 
 #include "carried_velocity.hpp"
+#include "frame.hpp"
 #include "hot.hpp"
 
 #include <algorithm>
@@ -10,18 +11,63 @@ namespace nscd {
 
 namespace {
 
+// A contact's own block of W and its friction, as the sums need them.
+struct Own {
+  double w, w_inverse, wt, mu;
+};
+
 struct Sums {
   Criterion of;
   double natural = 0;  // (m/s)^2
 
   // What is as without friction; v includes the bias.
-  NSCD_INLINE void add_normal(const Contact &c, double v)
+  NSCD_INLINE void add_normal(double w, double w_inverse, double p, double v)
   {
-    const double w = 1 / c.w_inverse;
-    of.bipotential += w * std::max(0.0, -c.impulse);
+    of.bipotential += w * std::max(0.0, -p);
     of.penetration += std::max(0.0, -v);
-    const double residual = w * (c.impulse - std::max(0.0, c.impulse - v * c.w_inverse));
+    const double residual = w * (p - std::max(0.0, p - v * w_inverse));
     natural += residual * residual;
+  }
+
+  NSCD_INLINE void add_frictionless(double w, double w_inverse, double p, double v)
+  {
+    add_normal(w, w_inverse, p, v);
+    of.bipotential += std::abs(v * p);
+  }
+
+  template <class Tangent>
+  NSCD_INLINE void add_frictional(const Own &own, const Split<Tangent> &p, const Split<Tangent> &v,
+                                  double tangential_scale)
+  {
+    add_normal(own.w, own.w_inverse, p.n, v.n);
+    // What pushes and separates: v p of small grains is too small a number to see it, and friction depends on p.
+    of.bipotential += std::max(0.0, std::min(v.n, p.n / own.w_inverse));
+    const double radius = coulomb_radius(own.mu, p.n);
+    if (std::isinf(own.mu)) of.bipotential += std::abs(v.n * p.n);
+    else of.bipotential += std::abs(v.n * p.n + inner(v.t, p.t) + radius * length(v.t));
+    const Tangent projected = onto_ball<Tangent>(p.t - v.t * (1 / own.wt), radius);
+    const double residual = own.wt * length(p.t - projected);
+    of.bipotential += tangential_scale * residual;
+    natural += residual * residual;
+  }
+
+  template <class Tangent>
+  NSCD_INLINE void add_motion(const Split<Tangent> &own, const Split<Tangent> &v)
+  {
+    const Split<Tangent> off{own.n - v.n, own.t - v.t};
+    of.motion += std::sqrt(off.n * off.n + inner(off.t, off.t));
+  }
+
+  Criterion mean(std::size_t contacts, double restitution, double free_norm)
+  {
+    if (contacts == 0) return of;
+    const double scale = 1 / (double(contacts) * (1 + restitution));
+    of.motion *= scale;
+    of.bipotential *= scale;
+    of.penetration *= scale;
+    // If nothing drives the contacts, what start impulses have left over is all there is: 1.
+    if (natural != 0) of.relative = free_norm > 0 ? std::sqrt(natural) / free_norm : 1;
+    return of;
   }
 };
 
@@ -32,8 +78,7 @@ NSCD_HOT Sums frictionless(const Problem &problem, const double *local_velocity)
   for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
     const Contact &c = problem.contacts[k];
     const double v = normal_velocity(c, bodies) + c.bias;
-    sum.add_normal(c, v);
-    sum.of.bipotential += std::abs(v * c.impulse);
+    sum.add_frictionless(1 / c.w_inverse, c.w_inverse, c.impulse, v);
     if (local_velocity) sum.of.motion += std::abs(local_velocity[k] - v);
   }
   return sum;
@@ -52,21 +97,36 @@ NSCD_HOT Sums frictional(const Problem &problem, const double *local_velocity)
     const auto &slide = slides[k];
     const auto bare = velocity<M>(c, problem.bodies.data(), problem.sliding.spins);
     const Split<Tangent> v{bare.n + c.bias, bare.t + bias(slide)};
-    sum.add_normal(c, v.n);
-    // What pushes and separates: v p of small grains is too small a number to see it, and friction depends on p.
-    sum.of.bipotential += std::max(0.0, std::min(v.n, c.impulse / c.w_inverse));
-    const double radius = coulomb_radius(slide.mu, c.impulse);
-    if (std::isinf(slide.mu)) sum.of.bipotential += std::abs(v.n * c.impulse);
-    else sum.of.bipotential += std::abs(v.n * c.impulse + inner(v.t, slide.impulse) + radius * length(v.t));
-    const double wt = (1 + response) / c.w_inverse;
-    const Tangent projected = onto_ball<Tangent>(slide.impulse - v.t * (1 / wt), radius);
-    const double residual = wt * length(slide.impulse - projected);
-    sum.of.bipotential += tangential_scale * residual;
-    sum.natural += residual * residual;
-    if (!local_velocity) continue;
-    const auto own = load_carried<Tangent>(local_velocity + k * carried_doubles<Tangent>);
-    const Split<Tangent> off{own.n - v.n, own.t - v.t};
-    sum.of.motion += std::sqrt(off.n * off.n + inner(off.t, off.t));
+    const Own own{1 / c.w_inverse, c.w_inverse, (1 + response) / c.w_inverse, slide.mu};
+    sum.add_frictional<Tangent>(own, {c.impulse, slide.impulse}, v, tangential_scale);
+    if (local_velocity)
+      sum.add_motion(load_carried<Tangent>(local_velocity + k * carried_doubles<Tangent>), v);
+  }
+  return sum;
+}
+
+template <class F>
+NSCD_HOT Sums global(const GlobalProblem &problem, const double *u, const double *local_velocity)
+{
+  using Tangent = typename F::Tangent;
+  Sums sum;
+  const double tangential_scale = (1 + problem.restitution) / (1 + problem.restitution_t);
+  for (std::size_t k = 0; k < problem.contacts(); ++k) {
+    const auto p = F::load(problem.p.data() + k * F::dim), v = F::load(u + k * F::dim);
+    const Diagonal &d = problem.diagonals[k];
+    if (d.w == 0) {  // nothing moves: what there is to see is whether it penetrates
+      sum.of.penetration += std::max(0.0, -v.n);
+      sum.natural += std::pow(std::min(0.0, v.n), 2);
+      continue;
+    }
+    const double *own = local_velocity ? local_velocity + k * F::carried : nullptr;
+    if constexpr (F::dim == 1) {
+      sum.add_frictionless(d.w, 1 / d.w, p.n, v.n);
+      if (own) sum.of.motion += std::abs(*own - v.n);
+    } else {
+      sum.add_frictional<Tangent>({d.w, 1 / d.w, d.wt, problem.friction(k)}, p, v, tangential_scale);
+      if (own) sum.add_motion(load_carried<Tangent>(own), v);
+    }
   }
   return sum;
 }
@@ -79,16 +139,14 @@ Criterion measure(const Problem &problem, const double *local_velocity)
   const Model model = problem.sliding.model;
   if (model == Model::frictionless) sum = frictionless(problem, local_velocity);
   with_friction(model, [&]<class M>(M) { sum = frictional<M>(problem, local_velocity); });
-  Criterion &result = sum.of;
-  if (problem.contacts.empty()) return result;
-  const double scale = 1 / (double(problem.contacts.size()) * (1 + problem.restitution));
-  result.motion *= scale;
-  result.bipotential *= scale;
-  result.penetration *= scale;
-  if (sum.natural == 0) return result;
-  // If nothing drives the contacts, what start impulses have left over is all there is: 1.
-  result.relative = problem.free_norm > 0 ? std::sqrt(sum.natural) / problem.free_norm : 1;
-  return result;
+  return sum.mean(problem.contacts.size(), problem.restitution, problem.free_norm);
+}
+
+Criterion measure(const GlobalProblem &problem, const double *u, const double *local_velocity)
+{
+  Sums sum;
+  with_frame(problem.dim(), [&]<class F>(F) { sum = global<F>(problem, u, local_velocity); });
+  return sum.mean(problem.contacts(), problem.restitution, free_norm(problem));
 }
 
 }    // namespace nscd

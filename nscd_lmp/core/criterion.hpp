@@ -17,6 +17,7 @@
 //   relative = || W_nn (p - max(0, p - v/W_nn)),  W_tt (p_t - proj(...)) ||_2 / || v_free ||_2.
 #pragma once
 
+#include "global_problem.hpp"
 #include "problem.hpp"
 
 namespace nscd {
@@ -32,5 +33,8 @@ struct Criterion {
 // `local_velocity`: the (1 + e) v~ that a local solver carries, one a contact (with friction as carried_velocity.hpp
 // lays them out), or nullptr if it carries none.
 Criterion measure(const Problem &problem, const double *local_velocity = nullptr);
+
+// The same of p with the velocities u (n, dim) that it gives.
+Criterion measure(const GlobalProblem &problem, const double *u, const double *local_velocity = nullptr);
 
 }    // namespace nscd

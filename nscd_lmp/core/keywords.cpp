@@ -94,6 +94,7 @@ const std::map<std::string, Reader> &readers()
       {"e_t", [](Settings &s, Words &w) { s.e_t = w.number<double>(); }},
       {"inertia", [](Settings &s, Words &w) { s.inertia = read_inertia(w); }},
       {"tol", [](Settings &s, Words &w) { s.tol = w.number<double>(); }},
+      {"criterion", [](Settings &s, Words &w) { s.criterion = parse_stop(w.word()); }},
       {"maxiter", [](Settings &s, Words &w) { s.maxiter = w.number<int>(); }},
       {"warmstart", [](Settings &s, Words &w) { s.warmstart = w.yes_or_no(); }},
       {"rho", [](Settings &s, Words &w) { s.rho = w.number<double>(); }},

@@ -3,18 +3,25 @@
 
 #include "contact.hpp"
 #include "friction.hpp"
+#include "storage.hpp"
 
 #include <span>
 #include <vector>
 
 namespace nscd {
 
+// A solver's own unknowns; kept between steps, so a steady step allocates nothing.
+struct Workspace {
+  std::vector<double> numbers{};
+  AlignedVector<Vec4> vectors{};
+};
+
 struct Problem {
   std::span<Body> bodies;       // 32 B aligned; in: free velocities plus what the start impulses gave; out: solution
   std::span<Contact> contacts;  // in: start impulses; out: solution
   double restitution = 0;       // e of (21); scales v to v~ = v / (1 + e) in the criterion
   double free_norm = 0;         // ||v_free + bias||_2 over the contacts, the scale of the relative residual, m/s
-  std::vector<double> &workspace;  // the solver's own unknowns; kept between steps, so a steady step allocates nothing
+  Workspace &workspace;
   Sliding sliding{};            // tangential impulses and spins, in and out as these; nothing in a frictionless scene
 };
 

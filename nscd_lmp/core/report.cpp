@@ -57,6 +57,7 @@ static std::string describe_solver(const Settings &s)
 {
   const SolverEntry &solver = find_solver(s.solver);
   std::ostringstream text;
+  if (solver.kind != "local law") return std::string(solver.title);
   text << "NLGS with " << solver.title << " (" << solver.parameter << " = " << solver_parameter(s, solver) << "/W_nn)";
   return text.str();
 }
@@ -94,7 +95,7 @@ std::string describe(const Step &step)
   const Settings &s = step.settings();
   std::ostringstream text;
   text << "law " << s.law << ", " << (step.has_custom_solver() ? "a solver handed in" : describe_solver(s)) << ", tol "
-       << s.tol << ", " << s.walls.size() << (s.walls.size() == 1 ? " wall" : " walls")
+       << s.tol << (s.criterion == Stop::natural ? " (natural map)" : "") << ", " << s.walls.size() << (s.walls.size() == 1 ? " wall" : " walls")
        << "; " << describe_model(s, step.state().friction) << "; " << describe_restitution(s)
        << "; one rank: no exchange";
   return text.str();

@@ -26,6 +26,13 @@ const char *name(Unconverged policy)
   return "";
 }
 
+Stop parse_stop(const std::string &word)
+{
+  if (word == "paper") return Stop::paper;
+  if (word == "natural") return Stop::natural;
+  fail("unknown criterion '", word, "': choose one of paper, natural");
+}
+
 static void require_range(const char *what, double value, double lo, double hi)
 {
   if (!(value >= lo && value <= hi))
@@ -34,6 +41,7 @@ static void require_range(const char *what, double value, double lo, double hi)
 
 double solver_parameter(const Settings &s, const SolverEntry &solver)
 {
+  if (solver.parameter.empty()) return 0;
   return (solver.parameter == "rho" ? s.rho : s.gamma).value_or(solver.default_parameter);
 }
 
@@ -43,7 +51,8 @@ static void check_parameter(const char *keyword, std::optional<double> value, co
   if (!(*value > 0 && std::isfinite(*value)))
     fail(keyword, " = ", *value, " must be > 0: it is a multiple of 1/W_nn, and the default is a good start");
   if (solver.parameter != keyword)
-    fail("keyword ", keyword, " is not a parameter of solver ", solver.name, ", which takes ", solver.parameter);
+    fail("keyword ", keyword, " is not a parameter of solver ", solver.name, ", which takes ",
+         solver.parameter.empty() ? "none" : solver.parameter);
 }
 
 bool Settings::frictional() const
@@ -108,7 +117,7 @@ Settings checked(Settings s, int dimension)
   require_range("theta", s.theta, 0, 1);
   require_range("recovery", s.recovery, 0, 1);
   if (!(s.tol > 0 && std::isfinite(s.tol)))
-    fail("tol = ", s.tol, " must be > 0: it is the value of criterion (42), m/s, at which a step is solved");
+    fail("tol = ", s.tol, " must be > 0: it is the value of the criterion at which a step is solved");
   if (s.maxiter < 1) fail("maxiter = ", s.maxiter, " must be at least 1");
   check_parameter("rho", s.rho, solver);
   check_parameter("gamma", s.gamma, solver);

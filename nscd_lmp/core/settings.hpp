@@ -1,6 +1,8 @@
 // What the user chooses, and the checks on it: one place for both doors.
 #pragma once
 
+#include "solver.hpp"
+
 #include <limits>
 #include <optional>
 #include <string>
@@ -25,6 +27,8 @@ enum class Unconverged { ignore, warn, error };
 Unconverged parse_unconverged(const std::string &word);
 const char *name(Unconverged policy);
 
+Stop parse_stop(const std::string &word);
+
 struct Settings {
   std::string solver = "pdas";
   std::string law = "gap";
@@ -32,7 +36,8 @@ struct Settings {
   double friction = 0;           // Coulomb's mu of pairs, and of walls without their own; may be `stick`
   double e_t = 0;                // tangential restitution, 0..1
   std::optional<Inertia> inertia;  // none: disc in dimension 2, sphere otherwise
-  double tol = 1e-7;             // on criterion (42)
+  double tol = 1e-7;             // on the criterion
+  Stop criterion = Stop::paper;
   int maxiter = 1000;
   bool warmstart = true;
   std::optional<double> rho;     // multiple of 1/W_nn; none: the solver's own default
@@ -53,8 +58,7 @@ void parse_keywords(Settings &settings, const std::vector<std::string> &words);
 // A single contact of a solved step misses the mean criterion by about so many times `tol`.
 constexpr double tolerances = 10;
 
-struct SolverEntry;
-// rho or gamma, whichever the solver takes, as a multiple of 1/W_nn.
+// rho or gamma, whichever the solver takes, as a multiple of 1/W_nn; 0 if it takes none.
 double solver_parameter(const Settings &settings, const SolverEntry &solver);
 
 // Raises Error (value, limit, remedy) for anything out of range or that does not fit the dimension; normalises the

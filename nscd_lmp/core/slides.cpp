@@ -13,13 +13,6 @@ Model choose_model(const Settings &settings, int dimension)
   return dimension == 2 ? Model::planar : Model::spatial;
 }
 
-int unknowns(Model model)
-{
-  int count = 1;
-  with_friction(model, [&]<class M>(M) { count = M::unknowns; });
-  return count;
-}
-
 void place_slides(State &s, std::size_t first)
 {
   const double pairs = s.settings.friction;
@@ -153,20 +146,6 @@ Sliding sliding(State &s, double e_t)
 {
   Friction &f = s.friction;
   return {f.model, f.spin_response, e_t, f.spins.data(), f.planar.data(), f.spatial.data()};
-}
-
-Tangents tangents(const Vec4 &n, Model model)
-{
-  if (model == Model::planar) return {Planar::tangent(n), Vec4{0, 0, 1, 0}};
-  // The axis that is farthest from the normal.
-  int axis = 0;
-  for (int d = 1; d < 3; ++d)
-    if (std::abs(n[d]) < std::abs(n[axis])) axis = d;
-  Vec4 first{};
-  first[axis] = 1;
-  first -= n * n[axis];
-  first /= length(first);
-  return {first, cross(n, first)};
 }
 
 }    // namespace nscd

@@ -3,6 +3,7 @@
 
 #include "spins.hpp"
 #include "state.hpp"
+#include "tangents.hpp"
 
 #include <span>
 
@@ -10,8 +11,6 @@ namespace nscd {
 
 // Frictionless, planar or spatial: what the settings and the dimension of the scene ask for.
 Model choose_model(const Settings &settings, int dimension);
-// Unknowns per contact: 1, 2 or 3.
-int unknowns(Model model);
 
 // Slides for the contacts from `first` on: coefficient of friction, no impulse, no bias.
 void place_slides(State &state, std::size_t first);
@@ -40,12 +39,6 @@ void write_impulse(State &state, std::size_t k, const double *components);
 
 // What a solver sees; e_t is what the biases contain.
 Sliding sliding(State &state, double e_t);
-
-// Two unit vectors with which the normal makes a right-handed frame. In the plane the first is (-n_y, n_x).
-struct Tangents {
-  Vec4 first, second;
-};
-Tangents tangents(const Vec4 &normal, Model model);
 
 // Tangential velocity of contact k at the start of the step.
 template <class M>

@@ -16,4 +16,14 @@ const std::vector<SolverEntry> &solvers() { return registry().entries(); }
 
 const SolverEntry &find_solver(std::string_view name) { return registry().find("solver", name); }
 
+double judged(const Criterion &criterion, const SolverOptions &options)
+{
+  return options.stop == Stop::paper ? criterion.total() : criterion.relative;
+}
+
+bool solved(const Criterion &criterion, const SolverOptions &options)
+{
+  return judged(criterion, options) < options.tol;
+}
+
 }    // namespace nscd

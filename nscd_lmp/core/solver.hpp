@@ -1,21 +1,20 @@
 // What a solver of the contact problem is, and the one list of them.
 //
-// A solver is a function; its file registers it, and every choice list (fix nscd, attach, the command line),
-// test and legend reads the registry. Adding one means adding one file to local/ (a law inside NLGS).
+// A solver is a function; its file registers it, and every choice list (fix nscd, attach, solve, the command line),
+// test and legend reads the registry. Adding one means adding one file: to local/ a law inside NLGS, to solvers/
+// anything else.
 #pragma once
 
 #include "criterion.hpp"
+#include "global_problem.hpp"
 
 #include <string_view>
 #include <vector>
 
 namespace nscd {
 
-struct SolverOptions {
-  double tol = 1e-7;     // on criterion (42), m/s
-  int maxiter = 1000;
-  double parameter = 1;  // rho or gamma as a multiple of 1/W_nn
-};
+// What `tol` is compared with: criterion (42) in m/s, or the natural map over the norm of the free velocities.
+enum class Stop { paper, natural };
 
 struct SolverReport {
   int iterations = 0;
@@ -23,13 +22,27 @@ struct SolverReport {
   Criterion criterion;
 };
 
+struct SolverOptions {
+  double tol = 1e-7;
+  int maxiter = 1000;
+  double parameter = 1;  // rho or gamma as a multiple of 1/W_nn
+  Stop stop = Stop::paper;
+  std::vector<SolverReport> *history = nullptr;  // gets a row whenever the criterion is measured, if given
+};
+
+// What the stopping rule looks at, and whether it is met.
+double judged(const Criterion &criterion, const SolverOptions &options);
+bool solved(const Criterion &criterion, const SolverOptions &options);
+
 struct SolverEntry {
   int order;                    // place in choice lists and legends
   std::string_view name;        // keyword
   std::string_view title;       // for legends
-  std::string_view parameter;   // "rho" or "gamma"
+  std::string_view kind;        // "local law": of NLGS; "global": all contacts at once
+  std::string_view parameter;   // "rho", "gamma" or none, ""
   double default_parameter;     // multiple of 1/W_nn
-  SolverReport (*solve)(Problem &, const SolverOptions &);
+  SolverReport (*solve)(Problem &, const SolverOptions &);              // grains
+  SolverReport (*solve_global)(GlobalProblem &, const SolverOptions &);  // any Delassus matrix
 };
 
 const std::vector<SolverEntry> &solvers();

@@ -26,6 +26,7 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension) :
     prediction_(law_->prediction(settings_)), look_ahead_(law_->looks_ahead() ? 1 : 0)
 {
   options_.tol = settings_.tol;
+  options_.stop = settings_.criterion;
   options_.maxiter = settings_.maxiter;
   options_.parameter = solver_parameter(settings_, *solver_);
   const Inertia inertia = settings_.inertia.value_or(dimension == 2 ? Inertia::disc : Inertia::sphere);
@@ -71,13 +72,14 @@ NSCD_HOT void Step::start_contacts(std::size_t first)
 void Step::ask_custom(std::size_t count)
 {
   const std::size_t width = unknowns(state_.friction.model);
-  workspace_.assign(count * width, 0.0);
-  for (std::size_t k = 0; k < count; ++k) read_impulse(state_, k, &workspace_[k * width]);
+  std::vector<double> &impulses = workspace_.numbers;
+  impulses.assign(count * width, 0.0);
+  for (std::size_t k = 0; k < count; ++k) read_impulse(state_, k, &impulses[k * width]);
   for (std::size_t k = 0; k < count; ++k) remove_impulse(state_, k);
-  if (count > 0) custom_(state_, count, workspace_);
-  for (const double impulse : workspace_)
+  if (count > 0) custom_(state_, count, impulses);
+  for (const double impulse : impulses)
     if (!std::isfinite(impulse)) fail("the solver handed in returned an impulse that is not a finite number");
-  for (std::size_t k = 0; k < count; ++k) write_impulse(state_, k, &workspace_[k * width]);
+  for (std::size_t k = 0; k < count; ++k) write_impulse(state_, k, &impulses[k * width]);
 }
 
 // With friction the solution is kept from making energy; what a custom solver answers is taken as it is.
@@ -101,7 +103,7 @@ bool Step::solve_part(const Part &part)
     ask_custom(part.contacts);
     solved.iterations = 1;
     solved.criterion = measure(problem);
-    solved.converged = solved.criterion.total() < settings_.tol;
+    solved.converged = nscd::solved(solved.criterion, options_);
   } else {
     solved = solver_->solve(problem, options_);
   }
@@ -178,7 +180,8 @@ void Step::judge()
 {
   if (report_.converged) return;
   if (settings_.unconverged == Unconverged::error)
-    fail("step not solved: criterion (42) is ", report_.criterion.total(), " after ", report_.iterations,
+    fail("step not solved: criterion ", settings_.criterion == Stop::paper ? "(42)" : "natural", " is ",
+         judged(report_.criterion, options_), " after ", report_.iterations,
          " iterations, tol is ", settings_.tol, ": raise maxiter or tol, or use `unconverged warn`");
   ++report_.unconverged;
 }

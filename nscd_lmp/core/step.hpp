@@ -87,7 +87,7 @@ class Step {
   WarmStart memory_;
   EnergyLimit energy_limit_;
   SolverOptions options_;
-  std::vector<double> workspace_;
+  Workspace workspace_;
   StepReport report_;
   const double prediction_;        // contacts are sought at q_k + prediction dt v_k
   const double look_ahead_;        // and this times dt |v| around (0 or 1)

@@ -11,7 +11,7 @@ using nscd::Contact;
 struct Hand {
   nscd::AlignedVector<Body> bodies;
   std::vector<Contact> contacts;
-  std::vector<double> workspace;
+  nscd::Workspace workspace;
 
   // A grain of mass m that moves at `v` along its contact's normal against an obstacle.
   void add(double m, double v, double impulse, double bias = 0)

@@ -25,7 +25,7 @@ struct DirectImpact {
   nscd::AlignedVector<Vec4> spins{};
   std::vector<nscd::Contact> contacts{};
   nscd::AlignedVector<nscd::Spatial::Slide> slides{};
-  std::vector<double> workspace{};
+  nscd::Workspace workspace{};
   double response, e, e_t;
   nscd::SolverReport report{};
 

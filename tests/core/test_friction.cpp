@@ -209,7 +209,7 @@ struct FlatPile {
   std::vector<nscd::Contact> contacts{};
   nscd::AlignedVector<Planar::Slide> planar{};
   nscd::AlignedVector<Spatial::Slide> spatial{};
-  std::vector<double> workspace{};
+  nscd::Workspace workspace{};
 
   explicit FlatPile(Random &random)
   {

@@ -13,7 +13,7 @@ constexpr double tol = 1e-7;
 struct OneContact {
   nscd::AlignedVector<Body> bodies;
   std::vector<Contact> contacts;
-  std::vector<double> workspace;
+  nscd::Workspace workspace;
   double e;
   nscd::SolverReport report;
 
@@ -87,12 +87,12 @@ TEST(one_visit_of_each_law_is_as_its_header_says)
   for (const auto &solver : nscd::solvers()) {
     OneContact c(2, -3, INFINITY, 0);
     c.solve(solver, 0, 1);
-    double expected = 6;  // pdas: the exact impulse m |v|
+    double expected = 6;  // pdas and global solvers: the exact impulse m |v|
     if (projects_a_gradient_step(solver)) expected = 6 * solver.default_parameter;
     if (solver.name == "ebp" || solver.name == "eal") expected = 0;  // chi = 0: not in contact yet
     CHECK_NEAR(c.contacts[0].impulse, expected, 1e-15);
     CHECK_NEAR(c.bodies[0][2], -3 + expected / 2, 1e-15);
-    CHECK(c.report.iterations == 1 && c.report.converged == (solver.name == "pdas"));
+    CHECK(c.report.iterations == 1 && c.report.converged == (expected == 6));
   }
 }
 
@@ -130,6 +130,7 @@ TEST(a_parameter_away_from_its_default_still_solves_one_contact)
 {
   for (const auto &solver : nscd::solvers())
     for (const double factor : {0.1, 0.5, 2.0}) {
+      if (solver.parameter.empty()) continue;
       OneContact c(2, -1, 3, 0);
       c.solve(solver, factor * solver.default_parameter);
       CHECK(c.report.converged);
@@ -161,7 +162,7 @@ TEST(maxiter_bounds_the_iterations)
 TEST(no_contacts_are_solved_at_once)
 {
   nscd::AlignedVector<Body> bodies(3);
-  std::vector<double> workspace;
+  nscd::Workspace workspace;
   for (const auto &solver : nscd::solvers()) {
     nscd::Problem problem{bodies, {}, 0, 0, workspace};
     const nscd::SolverReport report = solver.solve(problem, {});

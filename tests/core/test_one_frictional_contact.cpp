@@ -22,7 +22,7 @@ struct Rubbing {
   nscd::AlignedVector<Vec4> spins{2};
   std::vector<nscd::Contact> contacts{1};
   nscd::AlignedVector<typename M::Slide> slides{1};
-  std::vector<double> workspace{};
+  nscd::Workspace workspace{};
   double response = planar ? nscd::disc_spin_response : nscd::sphere_spin_response;
   double e = 0, e_t = 0;
   double speed = 0;  // scale of all velocities, m/s

@@ -23,7 +23,7 @@ static std::string random_keywords(Random &random, const nscd::SolverEntry &solv
   const char *restitutions[] = {"0", "0.5", "1"};
   std::string words = " restitution " + std::string(restitutions[int(random(0, 3))]);
   words += random() < 0.5 ? " warmstart yes" : " warmstart no";
-  if (random() < 0.3)
+  if (random() < 0.3 && !solver.parameter.empty())
     words += " " + std::string(solver.parameter) + " " + std::to_string(solver.default_parameter * random(0.3, 2));
   return words + " unconverged ignore maxiter 200 solver " + std::string(solver.name);
 }

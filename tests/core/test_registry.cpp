@@ -22,9 +22,12 @@ TEST(every_solver_entry_is_complete)
   for (const auto &entry : nscd::solvers()) {
     CHECK(&nscd::find_solver(entry.name) == &entry);
     CHECK(!entry.title.empty());
-    CHECK(entry.parameter == "rho" || entry.parameter == "gamma");
-    CHECK(entry.default_parameter > 0 && std::isfinite(entry.default_parameter));
+    CHECK(entry.kind == "local law" || entry.kind == "global");
+    if (entry.kind == "local law") CHECK(entry.parameter == "rho" || entry.parameter == "gamma");
+    else CHECK(entry.parameter == "");
+    if (!entry.parameter.empty()) CHECK(entry.default_parameter > 0 && std::isfinite(entry.default_parameter));
     CHECK(entry.solve != nullptr);
+    CHECK(entry.solve_global != nullptr);
   }
 }
 

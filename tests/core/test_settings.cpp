@@ -68,6 +68,7 @@ TEST(values_out_of_range_are_refused_with_value_and_limit)
   CHECK_ERROR(checked("solver sbp rho nan"), "rho");
   CHECK_ERROR(checked("solver newton"), "unknown solver 'newton'");
   CHECK_ERROR(checked("law hertz"), "unknown law 'hertz'");
+  CHECK_ERROR(settings("criterion energy"), "unknown criterion 'energy': choose one of paper, natural");
 }
 
 TEST(a_parameter_of_another_solver_is_refused)
@@ -161,6 +162,7 @@ TEST(defaults_of_rho_know_of_friction)
     const std::string words = "solver " + std::string(solver.name);
     CHECK(nscd::solver_parameter(settings(words), solver) == solver.default_parameter);
     CHECK(nscd::solver_parameter(settings(words + " friction 0.1"), solver) == solver.default_parameter);
+    if (solver.parameter.empty()) continue;
     const std::string own = words + " friction 0.1 " + std::string(solver.parameter) + " 0.125";
     CHECK(nscd::solver_parameter(settings(own), solver) == 0.125);
   }

@@ -44,6 +44,6 @@ struct Eal {
   }
 };
 
-static const RegisterSolver eal({40, "eal", "EAL", "rho", 1.0, nlgs<Eal>});
+static const RegisterSolver eal(local_law<Eal>(40, "eal", "EAL", "rho", 1.0));
 
 }    // namespace nscd

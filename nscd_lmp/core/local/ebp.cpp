@@ -63,6 +63,6 @@ struct Ebp {
   }
 };
 
-static const RegisterSolver ebp({30, "ebp", "EBP", "rho", 1.0, nlgs<Ebp>});
+static const RegisterSolver ebp(local_law<Ebp>(30, "ebp", "EBP", "rho", 1.0));
 
 }    // namespace nscd

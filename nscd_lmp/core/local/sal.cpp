@@ -30,6 +30,6 @@ struct Sal {
   }
 };
 
-static const RegisterSolver sal({20, "sal", "SAL", "rho", 4.0 / 9.0, nlgs<Sal>});
+static const RegisterSolver sal(local_law<Sal>(20, "sal", "SAL", "rho", 4.0 / 9.0));
 
 }    // namespace nscd

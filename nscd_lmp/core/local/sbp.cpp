@@ -43,6 +43,6 @@ struct Sbp {
   }
 };
 
-static const RegisterSolver sbp({10, "sbp", "SBP", "rho", 4.0 / 9.0, nlgs<Sbp>});
+static const RegisterSolver sbp(local_law<Sbp>(10, "sbp", "SBP", "rho", 4.0 / 9.0));
 
 }    // namespace nscd

@@ -1,0 +1,121 @@
+#include "problems.hpp"
+
+#include "../core/solver.hpp"
+#include "../core/settings.hpp"
+#include "arrays.hpp"
+#include "grain_arrays.hpp"
+
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <chrono>
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace nscd {
+
+namespace {
+
+template <class T>
+using Array = nb::ndarray<const T, nb::c_contig, nb::device::cpu>;
+
+struct Request {
+  const SolverEntry &solver;
+  SolverOptions options;
+};
+
+Request make_request(const std::string &solver, double tol, int maxiter, const std::string &criterion,
+                     std::optional<double> parameter, std::vector<SolverReport> &history)
+{
+  const SolverEntry &entry = find_solver(solver);
+  SolverOptions options;
+  options.tol = tol;
+  options.maxiter = maxiter;
+  options.parameter = parameter.value_or(entry.default_parameter);
+  options.stop = parse_stop(criterion);
+  options.history = &history;
+  return {entry, options};
+}
+
+// Runs it without the interpreter's lock and puts the outcome into a dictionary, but for impulse and velocity.
+template <class Solve>
+nb::dict outcome(const Request &request, Solve solve)
+{
+  SolverReport report;
+  const auto start = std::chrono::steady_clock::now();
+  {
+    nb::gil_scoped_release unlocked;
+    report = solve();
+  }
+  nb::dict d;
+  d["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  d["iterations"] = report.iterations;
+  d["converged"] = report.converged;
+  d["residual"] = judged(report.criterion, request.options);
+  const std::vector<SolverReport> &rows = *request.options.history;
+  d["history"] = make_array<double>(rows.size(), 6, [&](auto r, auto c) {
+    const Criterion &at = rows[r].criterion;
+    const double row[] = {double(rows[r].iterations), at.total(), at.motion, at.bipotential, at.penetration,
+                          at.relative};
+    return row[c];
+  });
+  return d;
+}
+
+void add_solution(nb::dict &d, std::size_t n, std::size_t dim, const std::vector<double> &impulse,
+                  const std::vector<double> &velocity)
+{
+  d["impulse"] = make_array<double>(n, dim, [&](auto r, auto c) { return impulse[r * dim + c]; });
+  d["velocity"] = make_array<double>(n, dim, [&](auto r, auto c) { return velocity[r * dim + c]; });
+}
+
+nb::dict solve_matrix(Array<std::int64_t> row_start, Array<std::int32_t> column, Array<double> block, Array<double> q,
+                      Array<double> mu, Array<double> start, const std::string &solver, double tol, int maxiter,
+                      const std::string &criterion, std::optional<double> parameter)
+{
+  const std::size_t n = q.shape(0), dim = q.shape(1);
+  BlockMatrix w;
+  w.dim = int(dim);
+  w.row_start.assign(row_start.data(), row_start.data() + row_start.size());
+  w.column.assign(column.data(), column.data() + column.size());
+  w.block.assign(block.data(), block.data() + block.size());
+  std::vector<double> p(start.data(), start.data() + start.size()), u(p.size());
+  GlobalProblem problem{.w = w, .q = {q.data(), q.size()}, .mu = {mu.data(), mu.size()}, .p = p};
+  std::vector<SolverReport> history;
+  const Request request = make_request(solver, tol, maxiter, criterion, parameter, history);
+  nb::dict d = outcome(request, [&] { return request.solver.solve_global(problem, request.options); });
+  w.multiply(p.data(), u.data());
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] += problem.q[i];
+  add_solution(d, n, dim, p, u);
+  return d;
+}
+
+nb::dict solve_spheres(Array<double> inverse_mass, Array<std::int32_t> body_i, Array<std::int32_t> body_j,
+                       Array<double> normal, Array<double> tangents, Array<double> q, Array<double> mu,
+                       Array<double> start, double spin_response, const std::string &solver, double tol, int maxiter,
+                       const std::string &criterion, std::optional<double> parameter)
+{
+  const std::size_t n = q.shape(0), dim = q.shape(1);
+  GrainProblem grains({n, inverse_mass.size(), dim, inverse_mass.data(), body_i.data(), body_j.data(), normal.data(),
+                       tangents.data(), q.data(), mu.size() ? mu.data() : nullptr, start.data(), spin_response});
+  std::vector<SolverReport> history;
+  const Request request = make_request(solver, tol, maxiter, criterion, parameter, history);
+  nb::dict d = outcome(request, [&] { return request.solver.solve(grains.problem(), request.options); });
+  add_solution(d, n, dim, grains.impulses(), grains.velocities());
+  return d;
+}
+
+}    // namespace
+
+void bind_problems(nb::module_ &m)
+{
+  m.def("solve_matrix", &solve_matrix, "row_start"_a, "column"_a, "block"_a, "q"_a, "mu"_a, "start"_a, nb::kw_only(),
+        "solver"_a, "tol"_a, "maxiter"_a, "criterion"_a, "parameter"_a.none());
+  m.def("solve_spheres", &solve_spheres, "inverse_mass"_a, "body_i"_a, "body_j"_a, "normal"_a, "tangents"_a, "q"_a,
+        "mu"_a, "start"_a, "spin_response"_a, nb::kw_only(), "solver"_a, "tol"_a, "maxiter"_a, "criterion"_a,
+        "parameter"_a.none());
+}
+
+}    // namespace nscd

@@ -1,0 +1,74 @@
+// Sweeps until the criterion is met: the loop that all solvers by sweeps share, on grains and on matrices.
+#pragma once
+
+#include "solver.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+namespace nscd {
+
+struct Extent {
+  std::size_t contacts;
+  double free_norm;  // m/s
+};
+
+// What a sweep must have corrected for the criterion to be certainly above tol: (42), the mean over the contacts, is
+// bounded by about the mean correction, and the 2-norm of the natural map by about the sum.
+inline double surely_above(const Extent &extent, const SolverOptions &options)
+{
+  const double n = double(extent.contacts);
+  return 4 * options.tol * (options.stop == Stop::paper ? n : std::sqrt(n) * extent.free_norm);
+}
+
+// `once()` sweeps and returns the sum over the contacts of the velocity that each visit corrected, m/s; `look()`
+// measures. The criterion costs a pass of its own, so far from convergence it is not taken; close to it the passes are
+// spread so that the count overshoots by < 2 %.
+template <class Sweep, class Look>
+SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep once, Look look)
+{
+  constexpr int always_checked = 4;
+  SolverReport report;
+  if (extent.contacts == 0) return report;
+  const double above = surely_above(extent, options);
+  int next_check = 0;
+  report.converged = false;
+  for (int s = 1; s <= options.maxiter && !report.converged; ++s) {
+    const double corrected = once();
+    report.iterations = s;
+    const bool close = !(corrected > above) && s >= next_check;
+    if (s > always_checked && !close && s < options.maxiter) continue;
+    report.criterion = look();
+    report.converged = solved(report.criterion, options);
+    if (options.history) options.history->push_back(report);
+    next_check = s + 1 + s / 64;
+  }
+  return report;
+}
+
+// Sees sweeps that go to and fro: the mean correction of the sweeps from s/2 to s is about that of the sweeps from s/4
+// to s/2, s = 256, 512, ... From then on visits do a part of their step. Slow convergence, as 1/s or 1/sqrt(s), is left
+// alone.
+class Relaxation {
+ public:
+  double share() const { return share_; }
+  void look(double corrected)
+  {
+    sum_ += corrected;
+    if (++sweeps_ < end_) return;
+    const double mean = sum_ / (end_ - begin_);
+    if (mean > no_better * mean_before_ && share_ > least_share) share_ /= 2;
+    mean_before_ = mean;
+    sum_ = 0;
+    begin_ = end_;
+    end_ *= 2;
+  }
+
+ private:
+  static constexpr double no_better = 0.9, least_share = 0.25;
+  double share_ = 1;
+  int sweeps_ = 0, begin_ = 0, end_ = 128;  // the window of sweeps that is averaged now
+  double sum_ = 0, mean_before_ = INFINITY;
+};
+
+}    // namespace nscd
