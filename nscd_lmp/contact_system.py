@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from nscd_lmp.contact_problem import ContactProblem
+
 
 @dataclass(frozen=True)
 class ContactSystem:
@@ -68,23 +70,16 @@ class ContactSystem:
         """Return the unknowns per contact: 1 without friction, 2 in a planar scene, 3 in space."""
         return 1 if self.slip is None else 1 + self.slip.shape[1]
 
+    def problem(self) -> ContactProblem:
+        """Return what this asks for as a problem for :func:`nscd_lmp.solve`, without W."""
+        return ContactProblem.from_spheres(
+            self.body_i, self.body_j, self.inverse_mass, self.normal, self.velocity,
+            self.friction, self.tangents, self.slip, self.spin_response,
+        )  # fmt: skip
+
     def delassus(self) -> NDArray[np.float64]:
-        """Return the dense (n d, n d) Delassus matrix W = H^T M^-1 H, 1/kg.
+        """Return the dense (n d, n d) Delassus matrix W = H^T M^-1 H, 1/kg; `problem().delassus()` is a sparse one.
 
         Contact by contact, along N, T1[, T2]. Without friction d = 1.
         """
-        n, d = len(self), self.dimension
-        bodies = len(self.inverse_mass)
-        directions = self.normal[:, None, :]
-        if self.tangents is not None:
-            directions = np.concatenate([directions, self.tangents], axis=1)
-        h = np.zeros((2, 3, bodies, n, d))  # velocity and surface velocity r omega
-        turned = np.cross(self.normal[:, None, :], directions)
-        for body, sign in ((self.body_i, 1.0), (self.body_j, -1.0)):
-            moves = np.flatnonzero(body >= 0)
-            h[0][:, body[moves], moves] += sign * directions[moves].transpose(2, 0, 1)
-            h[1][:, body[moves], moves] -= turned[moves].transpose(2, 0, 1)
-        response = np.array([1.0, self.spin_response or 0.0])
-        weight = response[:, None, None] * self.inverse_mass
-        columns = h.reshape(2, 3, bodies, n * d)
-        return np.einsum("abik,abi,abil->kl", columns, np.broadcast_to(weight, (2, 3, bodies)), columns, optimize=True)
+        return self.problem().delassus().toarray()

@@ -19,8 +19,8 @@ class MatrixSweeps {
   using Tangent = typename F::Tangent;
   using Vector = Split<Tangent>;
 
-  MatrixSweeps(GlobalProblem &problem, const SolverOptions &options) :
-      problem_(problem), parameter_(options.parameter), u_(problem.q.size())
+  MatrixSweeps(GlobalProblem &problem, double parameter) :
+      problem_(problem), parameter_(parameter), u_(problem.q.size())
   {
     if constexpr (Law::carries_velocity) carried_.assign(problem.contacts() * F::carried, 0.0);
   }
@@ -114,7 +114,7 @@ SolverReport matrix_nlgs(GlobalProblem &problem, const SolverOptions &options)
   SolverReport report;
   find_diagonals(problem);
   with_frame(problem.dim(), [&]<class F>(F) {
-    MatrixSweeps<Law, F> sweeps(problem, options);
+    MatrixSweeps<Law, F> sweeps(problem, options.parameter);
     Relaxation relaxation;
     const auto once = [&] {
       const double share = F::dim > 1 ? relaxation.share() : 1;

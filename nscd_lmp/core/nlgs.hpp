@@ -32,33 +32,36 @@ struct Swept {
 // One frictionless sweep, with momentum if there are impulses before the last one (bodies are extrapolated already).
 template <class Law, bool accelerated = false>
 NSCD_HOT Swept sweep(Problem &problem, [[maybe_unused]] double *carried, double parameter,
-                     [[maybe_unused]] const Momentum &momentum = {})
+                     const Momentum &momentum = {})
 {
   Body *const bodies = problem.bodies.data();
   Contact *const contacts = problem.contacts.data();
   const std::size_t n = problem.contacts.size();
-  Swept swept;
+  [[maybe_unused]] const double share = momentum.share();
+  [[maybe_unused]] double *const previous = momentum.previous;
+  double corrected = 0, against = 0;
   for (std::size_t k = 0; k < n; ++k) {
     Contact &c = contacts[k];
     const Body bi = bodies[c.i], bj = bodies[c.j];
     const double v = dot(c.normal, bi - bj) + c.bias;
     double start = c.impulse;
-    if constexpr (accelerated) start += momentum.share() * (c.impulse - momentum.previous[k]);
+    if constexpr (accelerated) start += share * (c.impulse - previous[k]);
     Local local{start, 0};
     if constexpr (Law::carries_velocity) local.velocity = carried[k];
     local = Law::visit(local, v, c.w_inverse, parameter);
     if constexpr (Law::carries_velocity) carried[k] = local.velocity;
     const double dp = local.impulse - start;
+    const double corrects = dp * (bi[3] + bj[3]);
     if constexpr (accelerated) {
-      swept.against -= dp * (local.impulse - c.impulse) * (bi[3] + bj[3]);
-      momentum.previous[k] = c.impulse;
+      against -= corrects * (local.impulse - c.impulse);
+      previous[k] = c.impulse;
     }
     c.impulse = local.impulse;
     bodies[c.i] = bi + c.normal * (dp * bi[3]);
     bodies[c.j] = bj - c.normal * (dp * bj[3]);
-    swept.corrected += std::abs(dp) * (bi[3] + bj[3]);
+    corrected += std::abs(corrects);
   }
-  return swept;
+  return {corrected, against};
 }
 
 // A visit of a frictional contact that does `share` of its step.
@@ -78,15 +81,17 @@ NSCD_INLINE Local visit_contact(const Contact &c, const Local &now, const Split<
 // One sweep with friction; M is Planar or Spatial. Visits do `share` of their step.
 template <class Law, class M, bool accelerated = false>
 NSCD_HOT Swept frictional_sweep(Problem &problem, [[maybe_unused]] double *carried, double parameter, double share,
-                                [[maybe_unused]] const Momentum &momentum = {})
+                                const Momentum &momentum = {})
 {
+  [[maybe_unused]] const double gain = 1 + momentum.share();
+  [[maybe_unused]] double *const previous = momentum.previous;
   using Tangent = typename M::Tangent;
   Body *const bodies = problem.bodies.data();
   Vec4 *const spins = problem.sliding.spins;
   auto *const slides = problem.sliding.template slides<M>();
   const double response = problem.sliding.spin_response, ratio = 1 + response, ratio_inverse = 1 / ratio;
   Vec4 corrected{};
-  Swept swept;
+  double against = 0;
   for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
     Contact &c = problem.contacts[k];
     auto &slide = slides[k];
@@ -99,8 +104,8 @@ NSCD_HOT Swept frictional_sweep(Problem &problem, [[maybe_unused]] double *carri
     FrictionalLocal<Tangent> now{{c.impulse, slide.impulse}, {}};
     [[maybe_unused]] const Split<Tangent> last = now.p;
     if constexpr (accelerated) {
-      double *const place = momentum.previous + k * carried_doubles<Tangent>;
-      now.p = part_way(load_carried<Tangent>(place), last, 1 + momentum.share());
+      double *const place = previous + k * carried_doubles<Tangent>;
+      now.p = part_way(load_carried<Tangent>(place), last, gain);
       store_carried<Tangent>(place, last);
     }
     if constexpr (Law::carries_velocity) now.v = load_carried<Tangent>(carried + k * carried_doubles<Tangent>);
@@ -111,7 +116,7 @@ NSCD_HOT Swept frictional_sweep(Problem &problem, [[maybe_unused]] double *carri
     const Tangent slid = next.p.t - now.p.t, turn = M::turned(c.normal, slid) * response;
     const Vec4 push = c.normal * (next.p.n - now.p.n) + M::in_space(c.normal, slid);
     if constexpr (accelerated)
-      swept.against -= w * ((next.p.n - now.p.n) * (next.p.n - last.n) + ratio * inner(slid, next.p.t - last.t));
+      against -= w * ((next.p.n - now.p.n) * (next.p.n - last.n) + ratio * inner(slid, next.p.t - last.t));
     bodies[c.i] = bi + push * bi[3];
     bodies[c.j] = bj - push * bj[3];
     M::set_spin(spins[c.i], si - turn * bi[3]);
@@ -119,8 +124,7 @@ NSCD_HOT Swept frictional_sweep(Problem &problem, [[maybe_unused]] double *carri
     corrected += magnitudes(push) * w;
   }
   // Between the mean of normal and tangential corrections; a root a contact would cost a tenth of the sweep.
-  swept.corrected = 0.5 * (1 + ratio) * (corrected[0] + corrected[1] + corrected[2]);
-  return swept;
+  return {0.5 * (1 + ratio) * (corrected[0] + corrected[1] + corrected[2]), against};
 }
 
 template <class Law, class M>

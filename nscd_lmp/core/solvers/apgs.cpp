@@ -100,7 +100,7 @@ SolverReport matrix_apgs(GlobalProblem &problem, const SolverOptions &options)
   SolverReport report;
   find_diagonals(problem);
   with_frame(problem.dim(), [&]<class F>(F) {
-    MatrixSweeps<Pdas, F> sweeps(problem, options);
+    MatrixSweeps<Pdas, F> sweeps(problem, 1);
     Momentum momentum;
     std::vector<double> last(problem.p.begin(), problem.p.end()), start(last), kept(last);
     const auto once = [&] {

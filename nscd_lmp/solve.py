@@ -1,0 +1,217 @@
+"""The solver-level door: any contact problem, any solver of the registry, without LAMMPS."""
+
+import math
+import warnings
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from nscd_lmp import _core, problem_checks
+from nscd_lmp.choices import SOLVERS
+from nscd_lmp.contact_problem import ContactProblem
+from nscd_lmp.problem_checks import BlockRows, Floats
+
+COLUMNS = ("iterations", "criterion", "motion", "bipotential", "penetration", "relative_residual")
+HISTORY_DTYPE = np.dtype([(name, "i8" if name == "iterations" else "f8") for name in COLUMNS])
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What a solver found.
+
+    Attributes
+    ----------
+    impulse : (n,) in dim 1, else (n, dim) float, N s
+        Along N, T1[, T2].
+    velocity : the same shape, m/s
+        W p + q, `q` included.
+    iterations : int
+        Sweeps, or whatever the solver counts.
+    converged : bool
+        Whether the residual is below the tolerance.
+    residual : float
+        What `tol` was compared with: relative (criterion ``"natural"``) or in m/s (``"paper"``).
+    history : structured array
+        A row for every time that the solver measured: `iterations`, `criterion` (42) in m/s with its parts `motion`,
+        `bipotential` and `penetration`, `relative_residual`. Sweeping solvers measure rarely while far off.
+    seconds : float
+        Wall time of the solver alone.
+    """
+
+    impulse: Floats
+    velocity: Floats
+    iterations: int
+    converged: bool
+    residual: float
+    history: NDArray[Any] = field(repr=False)
+    seconds: float
+
+
+def solve(
+    problem: ContactProblem,
+    solver: str = "pdas",
+    *,
+    tol: float = 1e-8,
+    maxiter: int = 10000,
+    warmstart: ArrayLike | Solution | None = None,
+    criterion: Literal["natural", "paper"] = "natural",
+    rho: float | None = None,
+    gamma: float | None = None,
+    unconverged: Literal["warn", "ignore", "error"] = "warn",
+) -> Solution:
+    """Return the impulses and velocities that solve a contact problem.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    solver : str
+        A name of :data:`nscd_lmp.SOLVERS`; a local law (``kind``) means nonlinear Gauss-Seidel with it.
+    tol : float
+        The problem is solved when the criterion is below it.
+    maxiter : int
+        Iterations after which it is given up; see `unconverged`.
+    warmstart : array_like (n,) or (n, dim), or Solution, optional
+        Impulses to start from, N s. None: 0.
+    criterion : str
+        What `tol` is compared with. ``"natural"``: the natural map over the norm of q, without a unit, the measure of
+        the FCLIB comparisons (Acary, Bremond & Huber 2018): the 2-norm over all contacts of
+        W_nn (p_n - max(0, p_n - u_n / W_nn)) and W_tt (p_t - proj(p_t - u_t / W_tt)), where proj goes onto the disc of
+        radius mu p_n. Where a contact's own block of W is not diag(W_nn, W_tt, W_tt), W_nn and W_tt stand for a
+        diagonal that is larger than the block.
+        ``"paper"``: criterion (42) of Barboteu & Dumont (2017) in m/s, the mean over the contacts of motion,
+        bipotential and penetration, which :func:`attach` uses.
+    rho, gamma : float, optional
+        The solver's parameter as a multiple of 1/W_nn; None for its own default.
+    unconverged : str
+        What to do where `tol` is not reached: ``"warn"``, ``"ignore"`` or ``"error"``.
+
+    Returns
+    -------
+    Solution
+
+    Raises
+    ------
+    NscdError
+        For an unknown name, a parameter that the solver does not have, a value out of range, a start of another shape
+        or not finite; with ``unconverged="error"`` where `tol` is not reached.
+
+    Warns
+    -----
+    UserWarning
+        With ``unconverged="warn"`` where `tol` is not reached.
+    """
+    parameter = _parameter(solver, rho, gamma)
+    _check(tol, maxiter, criterion, unconverged)
+    options = {"solver": solver, "tol": tol, "maxiter": maxiter, "criterion": criterion, "parameter": parameter}
+    found = _run(problem, _start(problem, warmstart), options)
+    if not found.converged and unconverged != "ignore":
+        unit = " m/s" if criterion == "paper" else ""
+        message = (
+            f"solver {solver} ended after {found.iterations} iterations with the {criterion} criterion at"
+            f" {found.residual:.3g}{unit}, above tol = {tol:.3g}: raise maxiter or tol, or choose another solver"
+        )
+        if unconverged == "error":
+            raise _core.NscdError(message)
+        warnings.warn(message, stacklevel=2)
+    return found
+
+
+def _parameter(solver: str, rho: float | None, gamma: float | None) -> float | None:
+    """Return the one of the two that was given, checked against the solver's entry in the registry."""
+    if solver not in SOLVERS:
+        raise _core.NscdError(f"unknown solver {solver!r}: choose one of {', '.join(SOLVERS)}")
+    takes = SOLVERS[solver].parameter
+    value = None
+    for name, given in (("rho", rho), ("gamma", gamma)):
+        if given is None:
+            continue
+        if name != takes:
+            has = f"which takes {takes}" if takes else "which has no parameter"
+            raise _core.NscdError(f"{name} is not a parameter of solver {solver}, {has}")
+        if not (given > 0 and math.isfinite(given)):
+            raise _core.NscdError(f"{name} = {given} must be > 0: it is a multiple of 1/W_nn, and None is a good start")
+        value = float(given)
+    return value
+
+
+def _check(tol: float, maxiter: int, criterion: str, unconverged: str) -> None:
+    """Refuse settings out of range."""
+    if not (tol > 0 and math.isfinite(tol)):
+        raise _core.NscdError(f"tol = {tol} must be > 0: it is the value of the criterion at which a problem is solved")
+    if not 1 <= maxiter < 2**31:
+        raise _core.NscdError(f"maxiter = {maxiter} must be at least 1 and below 2^31")
+    for name, value, choices in (
+        ("criterion", criterion, ("natural", "paper")),
+        ("unconverged", unconverged, ("warn", "ignore", "error")),
+    ):
+        if value not in choices:
+            raise _core.NscdError(f"unknown {name} {value!r}: choose one of {', '.join(choices)}")
+
+
+def _start(problem: ContactProblem, warmstart: ArrayLike | Solution | None) -> Floats:
+    """Return the impulses to start from, (n, dim)."""
+    shape = (len(problem), problem.dim)
+    if warmstart is None:
+        return np.zeros(shape)
+    start = problem_checks.floats("warmstart", warmstart.impulse if isinstance(warmstart, Solution) else warmstart)
+    if start.shape not in (shape, problem.q.shape):
+        raise _core.NscdError(
+            f"warmstart has the shape {start.shape} and must be {problem.q.shape}, one impulse for each contact"
+        )
+    return start.reshape(shape)
+
+
+def _run(problem: ContactProblem, start: Floats, options: dict[str, Any]) -> Solution:
+    """Return what the compiled core makes of it. Contacts that no impulse can move are not its business."""
+    n, dim = start.shape
+    q = problem.q.reshape(n, dim)
+    mu = np.zeros(0) if problem.mu is None else problem.mu
+    impulse, velocity = np.zeros((n, dim)), q.copy()
+    if problem.spheres is None:
+        w = problem.blocks
+        assert w is not None
+        own = w.diagonal_blocks()
+        start[own[:, 0, 0] == 0] = 0
+        found = _core.solve_matrix(w.row_start, w.column, _with_tangents(w, own), q, mu, start, **options)
+        impulse, velocity = found["impulse"], found["velocity"]
+    else:
+        s = problem.spheres
+        moves = np.flatnonzero(s.normal_response())
+        found = _core.solve_spheres(
+            s.inverse_mass, s.body_i[moves], s.body_j[moves], s.normal[moves], s.tangents[moves], q[moves],
+            mu[moves] if len(mu) else mu, start[moves], s.spin_response, **options,
+        )  # fmt: skip
+        impulse[moves], velocity[moves] = found["impulse"], found["velocity"]
+    return _solution(found, impulse.reshape(problem.q.shape), velocity.reshape(problem.q.shape))
+
+
+def _with_tangents(w: BlockRows, own: Floats) -> Floats:
+    """Return the blocks of W, with W_nn on the diagonal where a tangent does not move, which solvers divide by.
+
+    Such a contact has no friction, so no tangential impulse ever meets these numbers.
+    """
+    if own.shape[1] == 1:
+        return w.block
+    still = np.einsum("kii->ki", own) == 0
+    still[:, 0] = False
+    still &= own[:, :1, 0] > 0
+    if not still.any():
+        return w.block
+    block, on_diagonal = w.block.copy(), np.flatnonzero(w.rows() == w.column)
+    k, i = np.nonzero(still)
+    place = on_diagonal[np.searchsorted(w.column[on_diagonal], k)]
+    block[place, i, i] = own[k, 0, 0]
+    return block
+
+
+def _solution(found: dict[str, Any], impulse: Floats, velocity: Floats) -> Solution:
+    """Return the core's outcome with its history as a structured array."""
+    rows = np.asarray(found["history"]).reshape(-1, len(COLUMNS))
+    history = np.empty(len(rows), HISTORY_DTYPE)
+    for column, name in enumerate(COLUMNS):
+        history[name] = rows[:, column]
+    return Solution(
+        impulse, velocity, found["iterations"], found["converged"], found["residual"], history, found["seconds"]
+    )
