@@ -46,7 +46,7 @@ def convergence_history(step: int, longest: int, **variables: Any) -> list[Point
     before = SavedState.of(lmp)
     width = float(lmp.extract_variable("lx"))
     points = []
-    for solver in nscd_lmp.SOLVERS:
+    for solver in nscd_lmp.LOCAL_LAWS:
         for iterations in iteration_counts(longest):
             before.put_back(lmp)
             points.append(_solve_once(lmp, solver, iterations, width))
@@ -95,7 +95,7 @@ def draw(points: Sequence[Point], step: int, path: Path) -> None:
     """Draw criterion against iteration, a curve a law."""
     with matplotlib.rc_context(STYLE):
         figure, axes = new_figure(6.4, 4.2)
-        for k, law in enumerate(nscd_lmp.SOLVERS.values()):
+        for k, law in enumerate(nscd_lmp.LOCAL_LAWS.values()):
             mine = [p for p in points if p.solver == law.name]
             axes.semilogy(
                 [p.iterations for p in mine],

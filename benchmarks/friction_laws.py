@@ -117,7 +117,7 @@ def report_laws(results: dict[Case, dict[str, Any]], scene: str, start: str, tol
         case: result for case, result in results.items() if (case.scene, case.start, case.tol) == (scene, start, tol)
     }
     contacts = next(iter(chosen.values()))["contacts"]
-    columns = ["friction", *(law.title for law in nscd_lmp.SOLVERS.values())]
+    columns = ["friction", *(law.title for law in nscd_lmp.LOCAL_LAWS.values())]
     shown = {
         f"iterations a step; * steps ended above tol, after {maxiter}": _count,
         "solver, ms a step": lambda result: 1e3 * result["seconds_per_step"],
@@ -125,7 +125,7 @@ def report_laws(results: dict[Case, dict[str, Any]], scene: str, start: str, tol
     }
     for what, cell in shown.items():
         rows = [
-            [str(friction), *(cell(chosen[Case(scene, start, tol, friction, solver)]) for solver in nscd_lmp.SOLVERS)]
+            [str(friction), *(cell(chosen[Case(scene, start, tol, friction, solver)]) for solver in nscd_lmp.LOCAL_LAWS)]
             for friction in dict.fromkeys(case.friction for case in chosen)
         ]
         print_table(f"{scene}, {contacts} contacts, {start} start, tol {tol:g}: {what}", columns, rows)
@@ -169,7 +169,7 @@ def _power(tol: float) -> str:
 
 def _draw_panel(axes: Any, results: dict[Case, dict[str, Any]]) -> None:
     axes.set_yscale("log")
-    for k, law in enumerate(nscd_lmp.SOLVERS.values()):
+    for k, law in enumerate(nscd_lmp.LOCAL_LAWS.values()):
         mine = [(str(case.friction), result) for case, result in results.items() if case.solver == law.name]
         color, line = COLORS[k % len(COLORS)], (0, (4, 4)) if k % 2 else "-"
         names, counts = [name for name, _ in mine], [result["iterations_per_step"] for _, result in mine]
@@ -208,7 +208,7 @@ def main(words: Sequence[str] | None = None) -> None:
         for start in given.starts:
             for tol in TOLERANCES:
                 for friction in given.frictions:
-                    cases = [Case(scene, start, tol, friction, solver) for solver in nscd_lmp.SOLVERS]
+                    cases = [Case(scene, start, tol, friction, solver) for solver in nscd_lmp.LOCAL_LAWS]
                     for case, result in zip(cases, measure(bed, cases, given.maxiter, given.repeats), strict=True):
                         results[case] = result
                         parameters = {"grains": given.grains, "dt": DT, "maxiter": given.maxiter}

@@ -60,7 +60,7 @@ def measure(scene: Scene, repeats: int) -> dict[str, ScriptRun]:
     """Return the least disturbed run of each method; they take turns, so that a busy minute hits all of them."""
     best: dict[str, ScriptRun] = {}
     for _ in range(repeats * scene.more_repeats):
-        for solver in nscd_lmp.SOLVERS:
+        for solver in nscd_lmp.LOCAL_LAWS:
             run = run_script(scene.script, solver=solver, **scene.variables)
             kept = best.get(solver)
             if kept is None or run.wall_seconds < kept.wall_seconds:
@@ -81,7 +81,7 @@ def report_scene(scene: Scene, repeats: int, record: Record) -> None:
             repeats=repeats * scene.more_repeats,
             **result,
         )
-        rows.append([nscd_lmp.SOLVERS[solver].title, *_cells(result)])
+        rows.append([nscd_lmp.LOCAL_LAWS[solver].title, *_cells(result)])
     steps = int(runs[REFERENCE].totals["steps"])
     print_table(
         f"{scene.title}, {steps} steps",
@@ -210,7 +210,7 @@ def report_figure(folder: Path, quick: bool) -> None:
     levels = (1e-5, 1e-6, 1e-7, 1e-9)
     rows = [
         [law.title, *(iterations_below(points, law.name, level) for level in levels)]
-        for law in nscd_lmp.SOLVERS.values()
+        for law in nscd_lmp.LOCAL_LAWS.values()
     ]
     note = f"step {step}, {points[0].contacts} contacts, cold start; counts beyond 20 are tried 12 % apart"
     print_table("Figure 4: iterations to bring criterion (42) below", ["method", *map(str, levels)], rows, note)

@@ -137,7 +137,7 @@ def run_steps(bed: Bed, **options: Any) -> tuple[NDArray[Any], float]:
 
 def sweep_rows(beds: Sequence[Bed], record: Record) -> list[list[Any]]:
     """Measure all local laws on all models; they take turns."""
-    ways = [(bed, solver) for bed in beds for solver in nscd_lmp.SOLVERS]
+    ways = [(bed, solver) for bed in beds for solver in nscd_lmp.LOCAL_LAWS]
     costs: list[list[float]] = [[] for _ in ways]
     seen: list[NDArray[Any]] = [np.empty(0)] * len(ways)
     for _ in range(beds[0].repeats):
@@ -156,7 +156,7 @@ def sweep_rows(beds: Sequence[Bed], record: Record) -> list[list[Any]]:
             "sweep_ns_limit": bed.model.sweep_limit,
         }
         record.add(part="sweep", **bed.parameters, law="gap", solver=solver, warmstart=False, **result)
-        rows.append([bed.grains, bed.model.name, nscd_lmp.SOLVERS[solver].title, *result.values()])
+        rows.append([bed.grains, bed.model.name, nscd_lmp.LOCAL_LAWS[solver].title, *result.values()])
     return rows
 
 

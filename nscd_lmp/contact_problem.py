@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import sparse
 
 from nscd_lmp import problem_checks as checks
 from nscd_lmp._core import NscdError
@@ -30,6 +29,8 @@ class Spheres:
 
     def matrix(self) -> Any:
         """Return W = H^T M^-1 H as scipy.sparse.bsr_array, H^T M^-1/2 being sparse itself."""
+        from scipy import sparse
+
         n, bodies = len(self.normal), len(self.inverse_mass)
         axes = np.concatenate([self.normal[:, None, :], self.tangents], axis=1)
         turned = np.cross(self.normal[:, None, :], self.tangents)

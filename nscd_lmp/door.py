@@ -52,6 +52,7 @@ def attach(
     friction: float | Literal["stick"] = 0.0,
     e_t: float = 0.0,
     tol: float = 1e-7,
+    criterion: Literal["paper", "natural"] = "paper",
     maxiter: int = 1000,
     warmstart: bool = True,
     walls: Sequence[Plane] = (),
@@ -87,7 +88,10 @@ def attach(
     e_t : float
         Tangential restitution, 0 to 1.
     tol : float
-        A step is solved when the criterion (42) of Barboteu & Dumont (2017), in m/s, is below it.
+        A step is solved when the criterion is below it.
+    criterion : str
+        ``"paper"``: (42) of Barboteu & Dumont (2017), in m/s, the mean over the contacts. ``"natural"``: the natural map
+        of all contacts over the norm of their velocities without impulses, as in :func:`nscd_lmp.solve`.
     maxiter : int
         Iterations after which a step is given up; see `unconverged`.
     warmstart : bool
@@ -124,9 +128,9 @@ def attach(
         the positions and velocities are then those at the end of the last good step.
     """
     keywords = _keywords(
-        law=law, restitution=restitution, friction=friction, e_t=e_t or None, tol=tol, maxiter=maxiter,
-        warmstart=warmstart, rho=rho, gamma=gamma, theta=theta, recovery=recovery, unconverged=unconverged,
-        inertia=inertia,
+        law=law, restitution=restitution, friction=friction, e_t=e_t or None, tol=tol, criterion=criterion,
+        maxiter=maxiter, warmstart=warmstart, rho=rho, gamma=gamma, theta=theta, recovery=recovery,
+        unconverged=unconverged, inertia=inertia,
     )  # fmt: skip
     custom = None
     if callable(solver):

@@ -18,7 +18,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
 
 from nscd_lmp._core import NscdError
 from nscd_lmp.contact_problem import ContactProblem
@@ -110,7 +109,7 @@ def write_fclib(
     if Path(path).exists():
         raise NscdError(f"{path} exists: choose another path, or remove the file")
     n = len(problem)
-    w, q, mu = problem.delassus().tocsr(), problem.q.reshape(n, -1), problem.mu
+    w, q, mu = problem.delassus().tocsr(), problem.q.reshape(n, problem.dim), problem.mu
     if mu is None:
         w, mu = _with_tangents(w), np.zeros(n)
         q = _beside_zeros(q)
@@ -196,6 +195,8 @@ def _array(path: AnyPath, group: Any, name: str) -> Floats:
 
 def _matrix(path: AnyPath, group: Any) -> Any:
     """Return W in the format of scipy that its storage is."""
+    from scipy import sparse
+
     m, n, nz = (_integer(path, group, f"W/{name}") for name in ("m", "n", "nz"))
     if nz < -2:
         raise NscdError(
@@ -217,6 +218,8 @@ def _matrix(path: AnyPath, group: Any) -> Any:
 
 def _with_tangents(w: Any) -> Any:
     """Return W of a planar problem, whose tangents move on their own and as easily as the normals."""
+    from scipy import sparse
+
     normal, tangent = np.diag([1.0, 0.0]), np.diag([0.0, 1.0])
     return sparse.csr_array(sparse.kron(w, normal) + sparse.kron(sparse.diags_array(w.diagonal()), tangent))
 

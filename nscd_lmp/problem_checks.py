@@ -1,11 +1,13 @@
-"""What a contact problem must fulfil before the compiled core sees it; every check is one pass over arrays."""
+"""What a contact problem must fulfil before the compiled core sees it; every check is one pass over arrays.
+
+scipy is imported where it is used: it would double the time that `import nscd_lmp` takes.
+"""
 
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import sparse
 
 from nscd_lmp._core import NscdError
 
@@ -48,6 +50,8 @@ class BlockRows:
 
     def matrix(self) -> Any:
         """Return a copy as scipy.sparse.bsr_array."""
+        from scipy import sparse
+
         size = len(self) * self.block.shape[1]
         return sparse.bsr_array((self.block.copy(), self.column.copy(), self.row_start.copy()), shape=(size, size))
 
@@ -73,14 +77,14 @@ def floats(name: str, values: ArrayLike) -> Floats:
 
 def block_rows(matrix: Any, dim: int) -> BlockRows:
     """Return W, sparse or dense, by block rows of finite numbers; W itself is left alone."""
+    from scipy import sparse
+
     if not sparse.issparse(matrix):
         matrix = np.asarray(matrix)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
         raise NscdError(f"W has the shape {matrix.shape} and must be square: (n dim, n dim) for n contacts")
     if matrix.shape[0] % dim:
-        raise NscdError(
-            f"W has {matrix.shape[0]} rows, which is not a multiple of dim = {dim}: a contact has {ROWS[dim]}"
-        )
+        raise NscdError(f"W has {matrix.shape[0]} rows, not a multiple of dim = {dim}: a contact has {ROWS[dim]}")
     if matrix.dtype.kind not in "biuf":
         raise NscdError(f"W has the type {matrix.dtype} and must hold real numbers")
     if not (sparse.issparse(matrix) and matrix.format == "bsr" and matrix.blocksize == (dim, dim)):

@@ -75,8 +75,8 @@ def solve(
     warmstart : array_like (n,) or (n, dim), or Solution, optional
         Impulses to start from, N s. None: 0.
     criterion : str
-        What `tol` is compared with. ``"natural"``: the natural map over the norm of q, without a unit, the measure of
-        the FCLIB comparisons (Acary, Bremond & Huber 2018): the 2-norm over all contacts of
+        What `tol` is compared with. ``"natural"``: the natural map over the norm of q, without a unit, after the FCLIB
+        comparisons (Acary, Bremond & Huber 2018), but in velocities: the 2-norm over all contacts of
         W_nn (p_n - max(0, p_n - u_n / W_nn)) and W_tt (p_t - proj(p_t - u_t / W_tt)), where proj goes onto the disc of
         radius mu p_n. Where a contact's own block of W is not diag(W_nn, W_tt, W_tt), W_nn and W_tt stand for a
         diagonal that is larger than the block.

@@ -237,7 +237,8 @@ def test_info_names_build_doors_solvers_and_laws(capsys, monkeypatch):
     for name in (*nscd_lmp.SOLVERS, *nscd_lmp.LAWS, nscd_lmp.__version__):
         assert name in shown
     for solver in nscd_lmp.SOLVERS.values():
-        cells = (solver.name, solver.title, solver.parameter, f"{solver.default:g}")
+        parameter = (solver.parameter, f"{solver.default:g}") if solver.parameter else ("-", "-")
+        cells = (solver.name, solver.title, solver.kind, *parameter)
         assert re.search(r" +│ +".join(map(re.escape, cells)) + " ", shown)
     assert "unknowns per contact: 1, with friction 3, in dimension 2 with friction 2" in shown
     assert max(len(line) for line in shown.splitlines()) <= 80

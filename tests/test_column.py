@@ -73,7 +73,7 @@ COUNTED = 0.05
 
 
 @pytest.mark.parametrize("n", [5, 10, 20, 40])
-@pytest.mark.parametrize("solver", [name for name in SOLVERS if name in ("sbp", "sal", "ebp", "eal", "pdas")])
+@pytest.mark.parametrize("solver", nscd_lmp.LOCAL_LAWS)
 def test_sweeps_a_decade_of_a_column_are_those_of_gauss_seidel(start, solver, n):
     # W of the column is the chain with one fixed end, Jacobi's factor cos(pi / 2n): 0.93 n^2 for PDAS
     omega = nscd_lmp.SOLVERS[solver].default

@@ -149,7 +149,7 @@ def test_dropped_ball_bounces_to_e_squared_of_its_height(ball, law, e):
 
 
 @pytest.mark.parametrize("multiple", [0.01, 0.1, 1.0, 1.9, 2.0, 10.0, 100.0])
-@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("solver", nscd_lmp.LOCAL_LAWS)
 def test_parameter_far_from_its_default_is_right_or_reported(ball, solver, multiple):
     tol, maxiter = 1e-9, 1000
     parameter = {nscd_lmp.SOLVERS[solver].parameter: multiple}

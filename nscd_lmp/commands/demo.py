@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--n", type=int, default=PAPER_GRAINS, help=f"number of grains, the box grows along [{PAPER_GRAINS}]"
     )
-    parser.add_argument("--solver", choices=list(SOLVERS), default="pdas", help="local law [pdas]")
+    parser.add_argument("--solver", choices=list(SOLVERS), default="pdas", help="[pdas]")
 
 
 def main(arguments: argparse.Namespace) -> None:

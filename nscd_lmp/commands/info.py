@@ -66,12 +66,13 @@ def _add_doors(table: Table, lmp: Any) -> None:
 
 
 def solvers_table() -> Table:
-    """Return the registered solvers with the default of their parameter."""
+    """Return the registered solvers, local laws of NLGS first, with the default of their parameter."""
     table = Table()
-    for title in ("solver", "local law", "parameter", "default x W_nn"):
+    for title in ("solver", "title", "kind", "parameter", "default x W_nn"):
         table.add_column(title)
     for solver in nscd_lmp.SOLVERS.values():
-        table.add_row(solver.name, solver.title, solver.parameter, f"{solver.default:g}")
+        default = f"{solver.default:g}" if solver.parameter else "-"
+        table.add_row(solver.name, solver.title, solver.kind, solver.parameter or "-", default)
     return table
 
 

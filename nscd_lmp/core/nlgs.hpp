@@ -51,15 +51,14 @@ NSCD_HOT Swept sweep(Problem &problem, [[maybe_unused]] double *carried, double 
     local = Law::visit(local, v, c.w_inverse, parameter);
     if constexpr (Law::carries_velocity) carried[k] = local.velocity;
     const double dp = local.impulse - start;
-    const double corrects = dp * (bi[3] + bj[3]);
     if constexpr (accelerated) {
-      against -= corrects * (local.impulse - c.impulse);
+      against += v * (local.impulse - c.impulse);
       previous[k] = c.impulse;
     }
     c.impulse = local.impulse;
     bodies[c.i] = bi + c.normal * (dp * bi[3]);
     bodies[c.j] = bj - c.normal * (dp * bj[3]);
-    corrected += std::abs(corrects);
+    corrected += std::abs(dp) * (bi[3] + bj[3]);
   }
   return {corrected, against};
 }
@@ -115,8 +114,7 @@ NSCD_HOT Swept frictional_sweep(Problem &problem, [[maybe_unused]] double *carri
     slide.impulse = next.p.t;
     const Tangent slid = next.p.t - now.p.t, turn = M::turned(c.normal, slid) * response;
     const Vec4 push = c.normal * (next.p.n - now.p.n) + M::in_space(c.normal, slid);
-    if constexpr (accelerated)
-      against -= w * ((next.p.n - now.p.n) * (next.p.n - last.n) + ratio * inner(slid, next.p.t - last.t));
+    if constexpr (accelerated) against += v.n * (next.p.n - last.n) + inner(v.t, next.p.t - last.t);
     bodies[c.i] = bi + push * bi[3];
     bodies[c.j] = bj - push * bj[3];
     M::set_spin(spins[c.i], si - turn * bi[3]);
