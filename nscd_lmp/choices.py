@@ -9,7 +9,8 @@ from nscd_lmp import _core
 class Solver:
     """A solver: keyword, legend title, and its parameter with default (multiple of 1/W_nn), or ``""`` for none.
 
-    `kind` is ``"local law"`` (of nonlinear Gauss-Seidel) or ``"global"`` (all contacts at once).
+    `kind` is ``"local law"`` (of nonlinear Gauss-Seidel) or ``"global"`` (all contacts at once); `friction` whether it
+    takes contacts with friction.
     """
 
     name: str
@@ -17,6 +18,7 @@ class Solver:
     kind: str
     parameter: str
     default: float
+    friction: bool
 
 
 @dataclass(frozen=True)
@@ -29,4 +31,5 @@ class Law:
 
 SOLVERS: dict[str, Solver] = {row["name"]: Solver(**row) for row in _core.solvers()}
 LOCAL_LAWS: dict[str, Solver] = {name: solver for name, solver in SOLVERS.items() if solver.kind == "local law"}
+FRICTIONAL_SOLVERS: dict[str, Solver] = {name: solver for name, solver in SOLVERS.items() if solver.friction}
 LAWS: dict[str, Law] = {row["name"]: Law(**row) for row in _core.laws()}

@@ -55,4 +55,4 @@ KINDS = [Kind("sphere", False, None, 2.5), Kind("disc", True, None, 2.0), Kind("
 EVERY_KIND = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name.replace(" ", "-"))
 BOTH_KINDS = pytest.mark.parametrize("kind", KINDS[:2], ids=lambda kind: kind.name)
 EVERY_LAW = pytest.mark.parametrize("law", list(nscd_lmp.LAWS))
-EVERY_SOLVER = pytest.mark.parametrize("solver", list(nscd_lmp.SOLVERS))
+EVERY_SOLVER = pytest.mark.parametrize("solver", list(nscd_lmp.FRICTIONAL_SOLVERS))

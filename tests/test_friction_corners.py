@@ -11,7 +11,7 @@ from scenes import DOORS, FLOOR, Grains, grains, harden, state
 import nscd_lmp
 
 BOTH = pytest.mark.parametrize("door", DOORS)
-EVERY_SOLVER = pytest.mark.parametrize("solver", nscd_lmp.SOLVERS)
+EVERY_SOLVER = pytest.mark.parametrize("solver", nscd_lmp.FRICTIONAL_SOLVERS)
 EVERY_LAW = pytest.mark.parametrize("law", nscd_lmp.LAWS)
 SMOOTH_FLOOR = nscd_lmp.Plane((0, 0, 0), (0, 0, 1), friction=0.0)
 BOX = [(-1.0, 1.0)] * 3

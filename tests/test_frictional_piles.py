@@ -12,7 +12,7 @@ from scenes import GRAVITY, grains, harden, per_atom, state
 
 import nscd_lmp
 
-SOLVERS, LAWS = list(nscd_lmp.SOLVERS), list(nscd_lmp.LAWS)
+SOLVERS, LAWS = list(nscd_lmp.FRICTIONAL_SOLVERS), list(nscd_lmp.LAWS)
 EVERY_SOLVER = pytest.mark.parametrize("solver", SOLVERS)
 EVERY_LAW = pytest.mark.parametrize("law", LAWS)
 EVERY_DIMENSION = pytest.mark.parametrize("dim", [2, 3])

@@ -3,6 +3,7 @@
 
 #include "solver.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -21,6 +22,38 @@ inline double surely_above(const Extent &extent, const SolverOptions &options)
   return 4 * options.tol * (options.stop == Stop::paper ? n : std::sqrt(n) * extent.free_norm);
 }
 
+// Whether sweeps are worth going on with, by what they correct: it falls about geometrically, with ripples under momentum,
+// so the least of the sweeps from s/2 to s is held against the least of those from s/4 to s/2, s = first, 2 first, ...
+class Outlook {
+ public:
+  // `goal`: the correction at which the criterion is about met.
+  Outlook(double alternative, double goal) : alternative_(alternative), goal_(goal), end_(first(alternative)) {}
+
+  bool is_worse_than_alternative(double corrected)
+  {
+    if (alternative_ == 0) return false;
+    if (++sweeps_ > end_ / 4) (sweeps_ > end_ / 2 ? least_ : least_before_).add(corrected);
+    if (sweeps_ < end_) return false;
+    const double a_sweep = std::log(least_before_.value / least_.value) / (end_ / 4 + end_ / 8);
+    const double left = std::log(least_.value / goal_);
+    end_ *= 2;
+    least_before_ = least_;
+    least_ = {};
+    return left > 0 && !(left < alternative_ * a_sweep);
+  }
+
+ private:
+  struct Least {
+    double value = INFINITY;
+    void add(double v) { value = std::min(value, v); }
+  };
+  static int first(double alternative) { return std::max(32, int(alternative / 4)); }
+
+  const double alternative_, goal_;
+  int sweeps_ = 0, end_;
+  Least least_{}, least_before_{};
+};
+
 // `once()` sweeps and returns the sum over the contacts of the velocity that each visit corrected, m/s; `look()`
 // measures. The criterion costs a pass of its own, so far from convergence it is not taken; close to it the passes are
 // spread so that the count overshoots by < 2 %.
@@ -31,16 +64,19 @@ SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep o
   SolverReport report;
   if (extent.contacts == 0) return report;
   const double above = surely_above(extent, options);
+  Outlook outlook(options.alternative, above / 4);
   int next_check = 0;
   report.converged = false;
   for (int s = 1; s <= options.maxiter && !report.converged; ++s) {
     const double corrected = once();
     report.iterations = s;
+    const bool last = s == options.maxiter || outlook.is_worse_than_alternative(corrected);
     const bool close = !(corrected > above) && s >= next_check;
-    if (s > always_checked && !close && s < options.maxiter) continue;
+    if (s > always_checked && !close && !last) continue;
     report.criterion = look();
     report.converged = solved(report.criterion, options);
     if (options.history) options.history->push_back(report);
+    if (last) break;
     next_check = s + 1 + s / 64;
   }
   return report;

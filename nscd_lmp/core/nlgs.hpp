@@ -172,7 +172,7 @@ template <class Law>
 SolverEntry local_law(int order, std::string_view name, std::string_view title, std::string_view parameter,
                       double default_parameter)
 {
-  return {order, name, title, "local law", parameter, default_parameter, nlgs<Law>, matrix_nlgs<Law>};
+  return {order, name, title, "local law", parameter, default_parameter, true, nlgs<Law>, matrix_nlgs<Law>};
 }
 
 }    // namespace nscd

@@ -119,6 +119,8 @@ Settings checked(Settings s, int dimension)
   if (!(s.tol > 0 && std::isfinite(s.tol)))
     fail("tol = ", s.tol, " must be > 0: it is the value of the criterion at which a step is solved");
   if (s.maxiter < 1) fail("maxiter = ", s.maxiter, " must be at least 1");
+  if (s.frictional() && !solver.friction)
+    fail("solver ", solver.name, " is for contacts without friction: choose another, or leave friction out");
   check_parameter("rho", s.rho, solver);
   check_parameter("gamma", s.gamma, solver);
   for (std::size_t k = 0; k < s.walls.size(); ++k) normalise(s.walls[k], k);

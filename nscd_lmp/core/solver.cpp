@@ -14,6 +14,14 @@ RegisterSolver::RegisterSolver(const SolverEntry &entry) { registry().add(entry)
 
 const std::vector<SolverEntry> &solvers() { return registry().entries(); }
 
+std::vector<SolverEntry> frictional_solvers()
+{
+  std::vector<SolverEntry> some;
+  for (const SolverEntry &entry : solvers())
+    if (entry.friction) some.push_back(entry);
+  return some;
+}
+
 const SolverEntry &find_solver(std::string_view name) { return registry().find("solver", name); }
 
 double judged(const Criterion &criterion, const SolverOptions &options)

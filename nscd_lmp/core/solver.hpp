@@ -27,6 +27,7 @@ struct SolverOptions {
   int maxiter = 1000;
   double parameter = 1;  // rho or gamma as a multiple of 1/W_nn
   Stop stop = Stop::paper;
+  double alternative = 0;  // sweeps that another solver would cost: give up if more seem to be needed; 0: never
   std::vector<SolverReport> *history = nullptr;  // gets a row whenever the criterion is measured, if given
 };
 
@@ -41,11 +42,15 @@ struct SolverEntry {
   std::string_view kind;        // "local law": of NLGS; "global": all contacts at once
   std::string_view parameter;   // "rho", "gamma" or none, ""
   double default_parameter;     // multiple of 1/W_nn
+  bool friction;                // whether it takes contacts with friction
   SolverReport (*solve)(Problem &, const SolverOptions &);              // grains
   SolverReport (*solve_global)(GlobalProblem &, const SolverOptions &);  // any Delassus matrix
 };
 
 const std::vector<SolverEntry> &solvers();
+
+// Those that take contacts with friction.
+std::vector<SolverEntry> frictional_solvers();
 
 // Raises Error naming the choices.
 const SolverEntry &find_solver(std::string_view name);

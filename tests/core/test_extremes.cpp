@@ -23,10 +23,11 @@ TEST(a_step_without_grains_does_nothing)
 TEST(a_step_without_contacts_reports_none)
 {
   for (const auto &solver : nscd::solvers())
-    for (const char *law : {"law moreau ", "law gap ", "law gap friction 0.5 restitution 1 "}) {
+    for (const std::string law : {"law moreau ", "law gap ", "law gap friction 0.5 restitution 1 "}) {
+      if (!solver.friction && law.find("friction") != std::string::npos) continue;
       Scene scene;
       scene.add({0, 0, 0}, 1, 1, {1, 2, 3});
-      Step step(settings(law + ("solver " + std::string(solver.name))));
+      Step step(settings(law + "solver " + std::string(solver.name)));
       scene.advance(step, 0.5);
       CHECK(scene.x == std::vector<double>({0.5, 1, 1.5}) && step.report().contacts == 0);
       CHECK(step.report().converged && step.report().criterion.total() == 0);
@@ -131,7 +132,7 @@ TEST(extreme_mass_ratios_keep_the_arrays_finite)
 // the arrays stay finite.
 TEST(extreme_friction_keeps_the_arrays_finite)
 {
-  for (const auto &solver : nscd::solvers())
+  for (const auto &solver : nscd::frictional_solvers())
     for (const char *mu : {"friction 1e-300", "friction 1e-12", "friction 1e3", "friction 1e6", "stick"})
       for (const double slip : {0.0, 5e-324, 1e-160, 1e9}) {
         Scene scene;

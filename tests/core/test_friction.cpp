@@ -237,7 +237,7 @@ struct FlatPile {
 
 TEST(the_planar_model_is_the_spatial_one_in_the_plane)
 {
-  for (const auto &solver : nscd::solvers())
+  for (const auto &solver : nscd::frictional_solvers())
     for (int seed = 0; seed < 20; ++seed) {
       Random random(seed);
       FlatPile flat(random), space = flat;

@@ -115,7 +115,7 @@ static void run_scene(std::uint64_t seed, const std::string &law, const nscd::So
 static void run_scenes(const std::string &law, bool friction = false)
 {
   std::uint64_t seed = 1;
-  for (const auto &solver : nscd::solvers())
+  for (const auto &solver : friction ? nscd::frictional_solvers() : nscd::solvers())
     for (int scene = 0; scene < 12; ++scene) run_scene(seed++, law, solver, friction);
 }
 

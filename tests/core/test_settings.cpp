@@ -162,6 +162,8 @@ TEST(defaults_of_rho_know_of_friction)
     const std::string words = "solver " + std::string(solver.name);
     CHECK(nscd::solver_parameter(settings(words), solver) == solver.default_parameter);
     CHECK(nscd::solver_parameter(settings(words + " friction 0.1"), solver) == solver.default_parameter);
+    if (!solver.friction)
+      CHECK_ERROR(checked(words + " friction 0.1"), "solver " + std::string(solver.name) + " is for contacts without");
     if (solver.parameter.empty()) continue;
     const std::string own = words + " friction 0.1 " + std::string(solver.parameter) + " 0.125";
     CHECK(nscd::solver_parameter(settings(own), solver) == 0.125);

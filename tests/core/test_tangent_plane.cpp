@@ -20,7 +20,7 @@ static double out_of_tangent_planes(const nscd::State &s)
 
 TEST(tangential_impulses_stay_in_their_tangent_planes)
 {
-  for (const auto &solver : nscd::solvers())
+  for (const auto &solver : nscd::frictional_solvers())
     for (int seed = 0; seed < 12; ++seed) {
       Random random(seed);
       Scene scene = random_scene(random, 40, 1, 0.12, 5);

@@ -123,7 +123,7 @@ SolverReport matrix_apgs(GlobalProblem &problem, const SolverOptions &options)
   return report;
 }
 
-const RegisterSolver registered({60, "apgs", "APGS", "global", "", 0, apgs, matrix_apgs});
+const RegisterSolver registered({60, "apgs", "APGS", "global", "", 0, true, apgs, matrix_apgs});
 
 }    // namespace
 
