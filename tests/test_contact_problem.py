@@ -16,12 +16,14 @@ import nscd_lmp
 from nscd_lmp import ContactProblem, NscdError, solve
 
 SOLVERS = list(nscd_lmp.SOLVERS)
+FRICTIONAL_SOLVERS = list(nscd_lmp.FRICTIONAL_SOLVERS)
 TOL = 1e-11  # of the natural map; what velocities are off is that times the condition number on the active set, < 100
 NEAR = 1e-8  # times the largest velocity, about 1 m/s
-FAILING: dict[tuple[str, str], str] = {
-    ("apgs", "planar, rank-deficient"): "momentum over Gauss-Seidel sweeps has no proof: it ends in a cycle at 1e-3",
+CYCLE = "momentum over Gauss-Seidel sweeps has no proof: it ends in a cycle at 1e-3"
+FAILING = {
+    ("apgs", "planar, rank-deficient"): CYCLE,
+    ("auto", "planar, rank-deficient"): "with friction it is apgs: " + CYCLE,
 }
-
 
 FRICTIONLESS = {
     "full rank": bodies(20, 1, 40, 1),
@@ -43,10 +45,18 @@ def known_to_fail(solver: str, family: str) -> list[Any]:
 
 
 def pairs(families: dict[str, Bodies]) -> list[Any]:
-    """Return every solver with every family; those that are known to fail must fail."""
+    """Return every solver with every family it is for; those that are known to fail must fail."""
     return [
-        pytest.param(solver, family, marks=known_to_fail(solver, family)) for family in families for solver in SOLVERS
+        pytest.param(name, family, marks=known_to_fail(name, family))
+        for family in families
+        for name, solver in nscd_lmp.SOLVERS.items()
+        if solver.friction or families[family].dim == 1
     ]
+
+
+def of_dimensions(*dims: int) -> list[tuple[str, int]]:
+    """Return every solver with the dimensions that it takes; 1 is without friction."""
+    return [(name, dim) for name, solver in nscd_lmp.SOLVERS.items() for dim in dims if solver.friction or dim == 1]
 
 
 @pytest.mark.parametrize(("solver", "family"), pairs(FRICTIONLESS))
@@ -81,8 +91,7 @@ def test_zero_rows_get_no_impulse(solver: str) -> None:
     np.testing.assert_allclose(found.velocity[keep], inner.w @ p + inner.q, rtol=0, atol=NEAR)
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
-@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize(("solver", "dim"), of_dimensions(2, 3))
 def test_tangents_without_friction_need_no_response(solver: str, dim: int) -> None:
     w = np.kron(np.eye(2), np.diag([2.0, 0, 0][:dim]))
     q = np.array([[-1.0, 0.5, 0.0], [1.0, 0.0, 3.0]])[:, :dim]
@@ -91,8 +100,7 @@ def test_tangents_without_friction_need_no_response(solver: str, dim: int) -> No
     np.testing.assert_allclose(found.velocity[:, 1:], q[:, 1:], rtol=0, atol=1e-14)
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
-@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize(("solver", "dim"), of_dimensions(2, 3))
 def test_contact_of_infinite_friction_sticks(solver: str, dim: int) -> None:
     w, q = np.diag([1.0, 2.0, 2.0][:dim]), np.array([-1.0, 30.0, -40.0])[:dim]
     found = solve(ContactProblem(w, q, np.inf, dim), solver, tol=TOL, unconverged="error")
@@ -120,8 +128,7 @@ def test_sparse_delassus_is_that_of_lever_arms(dim: int) -> None:
     np.testing.assert_array_equal(again.toarray(), w.toarray())
 
 
-@pytest.mark.parametrize("dim", [1, 2, 3])
-@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize(("solver", "dim"), of_dimensions(1, 2, 3))
 def test_spheres_and_their_matrix_get_the_same_velocities(solver: str, dim: int) -> None:
     spheres = ContactProblem.from_spheres(**heap(dim, np.random.default_rng(3)))
     matrix = ContactProblem(spheres.delassus(), spheres.q, spheres.mu, dim)
@@ -152,8 +159,7 @@ def test_contact_system_of_a_step_becomes_a_problem(dim: int) -> None:
     np.testing.assert_allclose(system.delassus(), assembled(arrays), rtol=0, atol=1e-13)
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
-@pytest.mark.parametrize("dim", [1, 2, 3])
+@pytest.mark.parametrize(("solver", "dim"), of_dimensions(1, 2, 3))
 def test_no_contacts_are_solved(solver: str, dim: int) -> None:
     mu = None if dim == 1 else 0.3
     empty = np.zeros((0, 3))
@@ -210,16 +216,30 @@ def test_warm_start_takes_fewer_iterations(solver: str) -> None:
     cold = solve(given.problem(), solver, tol=TOL)
     nearby = ContactProblem(given.w, given.q * (1 + 1e-6))
     for start in (cold, cold.impulse, cold.impulse[:, None]):
-        assert solve(nearby, solver, tol=TOL, warmstart=start).iterations < solve(nearby, solver, tol=TOL).iterations
+        warm, again = (solve(nearby, solver, tol=TOL, warmstart=begin).iterations for begin in (start, None))
+        assert warm < again or warm == again == 1  # one factorisation may do
 
 
 @pytest.mark.parametrize("criterion", ["natural", "paper"])
-@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("solver", FRICTIONAL_SOLVERS)
 def test_history_ends_below_the_tolerance(solver: str, criterion: Any) -> None:
     found = solve(FRICTIONAL["spatial"].problem(0.3), solver, tol=1e-9, criterion=criterion, unconverged="error")
+    check_history(found, criterion, 1e-9)
+
+
+@pytest.mark.parametrize("criterion", ["natural", "paper"])
+def test_history_of_a_direct_solver_is_its_outcome(criterion: Any) -> None:
+    given = FRICTIONLESS["full rank"].problem()
+    found = solve(given, "active_set", tol=1e-9, criterion=criterion, unconverged="error")
+    assert len(found.history) == 1
+    check_history(found, criterion, 1e-9)
+
+
+def check_history(found: nscd_lmp.Solution, criterion: str, tol: float) -> None:
+    """Assert that the rows are in order and fall below tol with the last one."""
     rows = found.history
     column = rows["relative_residual" if criterion == "natural" else "criterion"]
-    assert found.residual == column[-1] < 1e-9 <= column[:-1].min(initial=1.0)
+    assert found.residual == column[-1] < tol <= column[:-1].min(initial=1.0)
     assert len(rows) == 1 or column[-1] < 1e-3 * column[0]
     assert (np.diff(rows["iterations"]) > 0).all() and rows["iterations"][-1] == found.iterations
     parts = rows["motion"] + rows["bipotential"] + rows["penetration"]

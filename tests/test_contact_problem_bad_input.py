@@ -32,6 +32,15 @@ def test_solve_refuses(words: dict[str, Any], message: str) -> None:
         solve(ContactProblem(np.eye(20), np.ones(20)), **words)
 
 
+@pytest.mark.parametrize("dim", [2, 3])
+def test_solvers_without_friction_refuse_tangents(dim: int) -> None:
+    # mu = 0 too: they have no tangents at all, so nothing depends on the values of mu
+    for mu in (0.3, 0.0):
+        problem = ContactProblem(np.eye(2 * dim), np.ones(2 * dim), mu, dim)
+        with pytest.raises(NscdError, match="solver active_set is for contacts without friction: choose another"):
+            solve(problem, "active_set")
+
+
 def changed(w: Any, entries: dict[tuple[int, int], float]) -> Array:
     """Return a copy of w with other entries."""
     out = np.array(w, dtype=float)

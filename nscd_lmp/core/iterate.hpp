@@ -9,6 +9,13 @@
 
 namespace nscd {
 
+// What a sweep did: the sum over the contacts of the velocity that each visit corrected, m/s, and, with momentum, the
+// product that Momentum looks at.
+struct Swept {
+  double corrected = 0;
+  double against = 0;
+};
+
 struct Extent {
   std::size_t contacts;
   double free_norm;  // m/s
@@ -82,29 +89,42 @@ SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep o
   return report;
 }
 
-// Sees sweeps that go to and fro: the mean correction of the sweeps from s/2 to s is about that of the sweeps from s/4
-// to s/2, s = 256, 512, ... From then on visits do a part of their step. Slow convergence, as 1/s or 1/sqrt(s), is left
-// alone.
+// Sees sweeps that get nowhere: the mean correction of the sweeps from s/2 to s is about that of the sweeps from s/4 to
+// s/2, s = 256, 512, ... Slow convergence, as 1/s or 1/sqrt(s), is left alone.
+class Plateau {
+ public:
+  bool is_reached(double corrected)
+  {
+    sum_ += corrected;
+    if (++sweeps_ < end_) return false;
+    const double mean = sum_ / (end_ - begin_);
+    const bool reached = mean > no_better * mean_before_;
+    mean_before_ = mean;
+    sum_ = 0;
+    begin_ = end_;
+    end_ *= 2;
+    return reached;
+  }
+
+ private:
+  static constexpr double no_better = 0.9;
+  int sweeps_ = 0, begin_ = 0, end_ = 128;  // the window of sweeps that is averaged now
+  double sum_ = 0, mean_before_ = INFINITY;
+};
+
+// Lets the visits of sweeps that go to and fro do a part of their step.
 class Relaxation {
  public:
   double share() const { return share_; }
   void look(double corrected)
   {
-    sum_ += corrected;
-    if (++sweeps_ < end_) return;
-    const double mean = sum_ / (end_ - begin_);
-    if (mean > no_better * mean_before_ && share_ > least_share) share_ /= 2;
-    mean_before_ = mean;
-    sum_ = 0;
-    begin_ = end_;
-    end_ *= 2;
+    if (plateau_.is_reached(corrected) && share_ > least_share) share_ /= 2;
   }
 
  private:
-  static constexpr double no_better = 0.9, least_share = 0.25;
+  static constexpr double least_share = 0.25;
   double share_ = 1;
-  int sweeps_ = 0, begin_ = 0, end_ = 128;  // the window of sweeps that is averaged now
-  double sum_ = 0, mean_before_ = INFINITY;
+  Plateau plateau_;
 };
 
 }    // namespace nscd

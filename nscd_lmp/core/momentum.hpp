@@ -3,34 +3,97 @@
 //   y = x_k + beta (x_k - x_{k-1}),  x_{k+1} = sweep(y),  theta' = (1 + sqrt(1 + 4 theta^2)) / 2,  beta = (theta - 1) / theta'
 //
 // A sweep moves bodies linearly with the impulses, so both are extrapolated alike and stay consistent.
-// Restart (theta = 1, beta = 0) when the sweep turns against the last move: (y - x_{k+1}) . (x_{k+1} - x_k) > 0.
+// Restart (theta = 1, beta = 0) when the sweep turns against the last move: (y - x_{k+1}) . (x_{k+1} - x_k) > 0; any positive
+// weight of the contacts will do, so frictionless sweeps take v . (x_{k+1} - x_k), with the velocity v that a visit has at
+// hand anyway.
+//
+// With friction the sweep is no descent of anything, and momentum can drive it round in circles or apart. Then beta is kept
+// below a cap, which is lowered whenever the sweeps get nowhere, down to none: what is left is NLGS with its relaxation.
 // Source: Nesterov (1983); O'Donoghue & Candes (2015), gradient scheme.
 #pragma once
 
+#include "iterate.hpp"
+
+#include <algorithm>
 #include <cmath>
 
 namespace nscd {
 
 class Momentum {
  public:
+  // beta, of the next sweep.
   double share() const { return share_; }
   double *previous = nullptr;  // impulses before the last sweep, a contact after another
 
-  // After a sweep; `against` is the product above, in the metric of the diagonal of W.
+  // After a sweep; `against` is the product above.
   void move_on(double against)
   {
-    if (!(against <= 0)) {
-      theta_ = 1;
-      share_ = 0;
-      return;
-    }
+    if (!(against <= 0)) return restart();
     const double next = 0.5 * (1 + std::sqrt(1 + 4 * theta_ * theta_));
     share_ = (theta_ - 1) / next;
     theta_ = next;
   }
 
+  void restart()
+  {
+    theta_ = 1;
+    share_ = 0;
+  }
+
+  void keep_below(double cap) { share_ = std::min(share_, cap); }
+
  private:
   double theta_ = 1, share_ = 0;
+};
+
+// The cap on momentum, and the share of their step that visits do once there is none, for sweeps with friction.
+class Caution {
+ public:
+  double cap() const { return 1 - gap_; }
+  double share() const { return relaxation_.share(); }
+
+  // After a sweep. Whether the cap has been lowered.
+  bool grows(double corrected)
+  {
+    if (gap_ == 1) {
+      relaxation_.look(corrected);
+      return false;
+    }
+    if (!plateau_.is_reached(corrected)) return false;
+    gap_ = std::min(1.0, 2 * gap_);
+    plateau_ = {};
+    return true;
+  }
+
+ private:
+  double gap_ = 0.05;
+  Plateau plateau_;
+  Relaxation relaxation_;
+};
+
+// Momentum and, with friction, the caution that it takes: what is the same on grains and on matrices.
+class Pace {
+ public:
+  explicit Pace(bool friction) : friction_(friction) {}
+  Momentum momentum;
+
+  // What part of their step visits do.
+  double share() const { return friction_ ? caution_.share() : 1; }
+
+  // Returns what the sweep would have corrected with whole steps.
+  double look(const Swept &swept)
+  {
+    const double corrected = swept.corrected / share();
+    momentum.move_on(swept.against);
+    if (!friction_) return corrected;
+    if (caution_.grows(corrected)) momentum.restart();
+    momentum.keep_below(caution_.cap());
+    return corrected;
+  }
+
+ private:
+  const bool friction_;
+  Caution caution_;
 };
 
 }    // namespace nscd

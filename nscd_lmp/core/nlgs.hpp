@@ -22,13 +22,6 @@
 
 namespace nscd {
 
-// What a sweep did: the sum over the contacts of the velocity that each visit corrected, m/s, and, with momentum, the
-// product that Momentum looks at.
-struct Swept {
-  double corrected = 0;
-  double against = 0;
-};
-
 // One frictionless sweep, with momentum if there are impulses before the last one (bodies are extrapolated already).
 template <class Law, bool accelerated = false>
 NSCD_HOT Swept sweep(Problem &problem, [[maybe_unused]] double *carried, double parameter,
@@ -108,13 +101,16 @@ NSCD_HOT Swept frictional_sweep(Problem &problem, [[maybe_unused]] double *carri
       store_carried<Tangent>(place, last);
     }
     if constexpr (Law::carries_velocity) now.v = load_carried<Tangent>(carried + k * carried_doubles<Tangent>);
-    const FrictionalLocal<Tangent> next = visit_contact<Law, M>(c, now, v, own, parameter, share);
+    FrictionalLocal<Tangent> next = visit_contact<Law, M>(c, now, v, own, parameter, share);
+    // Visits do not feel a part along the normal, and momentum makes it grow.
+    if constexpr (accelerated) next.p.t = M::tangential(c.normal, next.p.t);
     if constexpr (Law::carries_velocity) store_carried<Tangent>(carried + k * carried_doubles<Tangent>, next.v);
     c.impulse = next.p.n;
     slide.impulse = next.p.t;
     const Tangent slid = next.p.t - now.p.t, turn = M::turned(c.normal, slid) * response;
     const Vec4 push = c.normal * (next.p.n - now.p.n) + M::in_space(c.normal, slid);
-    if constexpr (accelerated) against += v.n * (next.p.n - last.n) + inner(v.t, next.p.t - last.t);
+    if constexpr (accelerated)
+      against -= w * ((next.p.n - now.p.n) * (next.p.n - last.n) + ratio * inner(slid, next.p.t - last.t));
     bodies[c.i] = bi + push * bi[3];
     bodies[c.j] = bj - push * bj[3];
     M::set_spin(spins[c.i], si - turn * bi[3]);

@@ -33,6 +33,7 @@
 //
 // Iterations are faces solved; the sweeps before the first one are not counted.
 #include "../delassus.hpp"
+#include "../error.hpp"
 #include "../momentum.hpp"
 #include "face_minimum.hpp"
 
@@ -231,6 +232,7 @@ class ActiveSet {
 
 SolverReport active_set(GlobalProblem &problem, const SolverOptions &options)
 {
+  if (problem.dim() > 1) fail("solver active_set is for contacts without friction: choose another");
   SolverReport report;
   const std::size_t n = problem.contacts();
   if (n == 0) return report;

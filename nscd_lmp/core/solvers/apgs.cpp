@@ -51,17 +51,16 @@ class BodyMomentum {
   const std::size_t count_;
 };
 
+// sweep(momentum, share) sweeps once; the workspace holds the start impulses.
 template <class Sweep>
 SolverReport accelerate(Problem &problem, const SolverOptions &options, Sweep sweep)
 {
-  Momentum momentum;
-  momentum.previous = problem.workspace.numbers.data();
+  Pace pace(problem.sliding.model != Model::frictionless);
+  pace.momentum.previous = problem.workspace.numbers.data();
   BodyMomentum bodies(problem);
   const auto once = [&] {
-    bodies.extrapolate(momentum.share());
-    const Swept swept = sweep(momentum);
-    momentum.move_on(swept.against);
-    return swept.corrected;
+    bodies.extrapolate(pace.momentum.share());
+    return pace.look(sweep(pace.momentum, pace.share()));
   };
   return iterate({problem.contacts.size(), problem.free_norm}, options, once, [&] { return measure(problem); });
 }
@@ -69,55 +68,74 @@ SolverReport accelerate(Problem &problem, const SolverOptions &options, Sweep sw
 template <class M>
 SolverReport apgs_with_friction(Problem &problem, const SolverOptions &options)
 {
-  constexpr std::size_t width = carried_doubles<typename M::Tangent>;
-  problem.workspace.numbers.resize(problem.contacts.size() * width);
-  for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
-    const Split<typename M::Tangent> p{problem.contacts[k].impulse, problem.sliding.slides<M>()[k].impulse};
-    store_carried<typename M::Tangent>(&problem.workspace.numbers[k * width], p);
-  }
-  return accelerate(problem, options, [&](const Momentum &momentum) {
-    return frictional_sweep<Pdas, M, true>(problem, nullptr, 1, 1, momentum);
+  using Tangent = typename M::Tangent;
+  problem.workspace.numbers.resize(problem.contacts.size() * carried_doubles<Tangent>);
+  double *place = problem.workspace.numbers.data();
+  for (std::size_t k = 0; k < problem.contacts.size(); ++k, place += carried_doubles<Tangent>)
+    store_carried<Tangent>(place, {problem.contacts[k].impulse, problem.sliding.slides<M>()[k].impulse});
+  return accelerate(problem, options, [&](const Momentum &momentum, double share) {
+    return frictional_sweep<Pdas, M, true>(problem, nullptr, 1, share, momentum);
+  });
+}
+
+SolverReport apgs_without_friction(Problem &problem, const SolverOptions &options)
+{
+  problem.workspace.numbers.resize(problem.contacts.size());
+  for (std::size_t k = 0; k < problem.contacts.size(); ++k)
+    problem.workspace.numbers[k] = problem.contacts[k].impulse;
+  return accelerate(problem, options, [&](const Momentum &momentum, double) {
+    return sweep<Pdas, true>(problem, nullptr, 1, momentum);
   });
 }
 
 SolverReport apgs(Problem &problem, const SolverOptions &options)
 {
+  if (problem.sliding.model == Model::frictionless) return apgs_without_friction(problem, options);
   SolverReport report;
-  if (problem.sliding.model == Model::frictionless) {
-    problem.workspace.numbers.resize(problem.contacts.size());
-    for (std::size_t k = 0; k < problem.contacts.size(); ++k)
-      problem.workspace.numbers[k] = problem.contacts[k].impulse;
-    return accelerate(problem, options,
-                      [&](const Momentum &momentum) { return sweep<Pdas, true>(problem, nullptr, 1, momentum); });
-  }
   with_friction(problem.sliding.model, [&]<class M>(M) { report = apgs_with_friction<M>(problem, options); });
   return report;
 }
 
 // The same on the rows of a matrix.
+template <class F>
+class MatrixMomentum {
+ public:
+  explicit MatrixMomentum(GlobalProblem &problem) :
+      problem_(problem), sweeps_(problem, 1), last_(problem.p.begin(), problem.p.end()), start_(last_), now_(last_)
+  {
+  }
+
+  Swept sweep(const Momentum &momentum, double share)
+  {
+    for (std::size_t i = 0; i < last_.size(); ++i) {
+      now_[i] = problem_.p[i];
+      start_[i] = problem_.p[i] += momentum.share() * (problem_.p[i] - last_[i]);
+    }
+    Swept swept{sweeps_.sweep(share), 0};
+    for (std::size_t i = 0; i < last_.size(); ++i) {
+      const Diagonal &d = problem_.diagonals[i / F::dim];
+      swept.against += (i % F::dim ? d.wt : d.w) * (start_[i] - problem_.p[i]) * (problem_.p[i] - now_[i]);
+    }
+    last_.swap(now_);
+    return swept;
+  }
+
+  Criterion look() { return sweeps_.look(); }
+
+ private:
+  GlobalProblem &problem_;
+  MatrixSweeps<Pdas, F> sweeps_;
+  std::vector<double> last_, start_, now_;
+};
+
 SolverReport matrix_apgs(GlobalProblem &problem, const SolverOptions &options)
 {
   SolverReport report;
   find_diagonals(problem);
   with_frame(problem.dim(), [&]<class F>(F) {
-    MatrixSweeps<Pdas, F> sweeps(problem, 1);
-    Momentum momentum;
-    std::vector<double> last(problem.p.begin(), problem.p.end()), start(last), kept(last);
-    const auto once = [&] {
-      for (std::size_t i = 0; i < last.size(); ++i) {
-        kept[i] = problem.p[i];
-        start[i] = problem.p[i] += momentum.share() * (problem.p[i] - last[i]);
-      }
-      const double corrected = sweeps.sweep(1);
-      double against = 0;
-      for (std::size_t i = 0; i < last.size(); ++i) {
-        const Diagonal &d = problem.diagonals[i / F::dim];
-        against += (i % F::dim ? d.wt : d.w) * (start[i] - problem.p[i]) * (problem.p[i] - kept[i]);
-      }
-      last = kept;
-      momentum.move_on(against);
-      return corrected;
-    };
+    MatrixMomentum<F> sweeps(problem);
+    Pace pace(F::dim > 1);
+    const auto once = [&] { return pace.look(sweeps.sweep(pace.momentum, pace.share())); };
     report = iterate({problem.contacts(), free_norm(problem)}, options, once, [&] { return sweeps.look(); });
   });
   return report;
