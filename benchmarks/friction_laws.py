@@ -125,7 +125,10 @@ def report_laws(results: dict[Case, dict[str, Any]], scene: str, start: str, tol
     }
     for what, cell in shown.items():
         rows = [
-            [str(friction), *(cell(chosen[Case(scene, start, tol, friction, solver)]) for solver in nscd_lmp.LOCAL_LAWS)]
+            [
+                str(friction),
+                *(cell(chosen[Case(scene, start, tol, friction, solver)]) for solver in nscd_lmp.LOCAL_LAWS),
+            ]
             for friction in dict.fromkeys(case.friction for case in chosen)
         ]
         print_table(f"{scene}, {contacts} contacts, {start} start, tol {tol:g}: {what}", columns, rows)

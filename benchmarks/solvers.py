@@ -1,7 +1,7 @@
 """Solvers against each other: one contact problem to many tolerances, and whole runs.
 
-problems  work against precision: milliseconds of the solver, best of the repeats, against the largest error of the contact
-          velocities, from loose to tight `tol`; a table and a chart
+problems  work against precision: milliseconds of the solver, best of the repeats, against the largest error of the
+          contact velocities, from loose to tight `tol`; a table and a chart
 paper     milliseconds to criterion (42) below 1e-7 and 1e-10 m/s, and how many times faster than NLGS-PDAS
 runs      sedimentation to rest, law gap, dt 5e-4 s, tol 1e-6: seconds of the solver and of all, against NLGS-PDAS
 

@@ -90,8 +90,8 @@ def attach(
     tol : float
         A step is solved when the criterion is below it.
     criterion : str
-        ``"paper"``: (42) of Barboteu & Dumont (2017), in m/s, the mean over the contacts. ``"natural"``: the natural map
-        of all contacts over the norm of their velocities without impulses, as in :func:`nscd_lmp.solve`.
+        ``"paper"``: (42) of Barboteu & Dumont (2017), in m/s, the mean over the contacts. ``"natural"``: the natural
+        map of all contacts over the norm of their velocities without impulses, as in :func:`nscd_lmp.solve`.
     maxiter : int
         Iterations after which a step is given up; see `unconverged`.
     warmstart : bool

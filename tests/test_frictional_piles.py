@@ -119,10 +119,13 @@ def test_sticking_pile_rests_on_an_incline_and_its_warm_start_knows_the_friction
         assert attached.stats["unconverged_steps"][-1] == 0
         assert np.abs(state(lmp)[1]).max() <= 1e-8  # tol, a mean of 22 or 46 contacts
         iterations[warmstart] = attached.stats["iterations"]
-    assert iterations[True][0] == iterations[False][0] > 100
+    sweeps = nscd_lmp.SOLVERS[solver].kind == "local law"
+    assert iterations[True][0] == iterations[False][0]
+    if sweeps:
+        assert iterations[True][0] > 100
     # Every step is the problem of the first again, off by the tolerance. Without the friction of the last step it would
-    # cost as much as from nothing.
-    assert iterations[True][1] <= iterations[False][1] / 8
+    # cost as much as from nothing. Solvers that need few iterations have fewer to spare.
+    assert iterations[True][1] <= iterations[False][1] / (8 if sweeps else 2)
     assert iterations[True][3:].max() <= 2
 
 

@@ -195,7 +195,8 @@ NB_MODULE(_core, m)
   nb::exception<nscd::Error>(m, "NscdError", PyExc_RuntimeError);
   bind_external_fix(m);
   nscd::bind_problems(m);
-  m.def("solvers", &solver_table, "Solvers in legend order: name, title, kind, parameter, default (multiple of 1/W_nn), friction.");
+  m.def("solvers", &solver_table,
+        "Solvers in legend order: name, title, kind, parameter, default (multiple of 1/W_nn), friction.");
   m.def("laws", &law_table, "Contact laws: name, title.");
   m.attr("REPORT_COLUMNS") = names(nscd::report_column_names);
   m.attr("TOTALS_COLUMNS") = names(nscd::totals_column_names);

@@ -29,8 +29,9 @@ inline double surely_above(const Extent &extent, const SolverOptions &options)
   return 4 * options.tol * (options.stop == Stop::paper ? n : std::sqrt(n) * extent.free_norm);
 }
 
-// Whether sweeps are worth going on with, by what they correct: it falls about geometrically, with ripples under momentum,
-// so the least of the sweeps from s/2 to s is held against the least of those from s/4 to s/2, s = first, 2 first, ...
+// Whether sweeps are worth going on with, by what they correct: it falls about geometrically, with ripples under
+// momentum, so the least of the sweeps from s/2 to s is held against the least of those from s/4 to s/2, s = first, 2
+// first, ...
 class Outlook {
  public:
   // `goal`: the correction at which the criterion is about met.

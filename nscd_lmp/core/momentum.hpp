@@ -1,14 +1,17 @@
 // Nesterov's momentum over sweeps, restarted where it overshoots: what APGS adds to NLGS (solvers/apgs.cpp).
 //
-//   y = x_k + beta (x_k - x_{k-1}),  x_{k+1} = sweep(y),  theta' = (1 + sqrt(1 + 4 theta^2)) / 2,  beta = (theta - 1) / theta'
+//   y = x_k + beta (x_k - x_{k-1}),  x_{k+1} = sweep(y)
+//   theta' = (1 + sqrt(1 + 4 theta^2)) / 2,  beta = (theta - 1) / theta'
 //
 // A sweep moves bodies linearly with the impulses, so both are extrapolated alike and stay consistent.
-// Restart (theta = 1, beta = 0) when the sweep turns against the last move: (y - x_{k+1}) . (x_{k+1} - x_k) > 0; any positive
-// weight of the contacts will do, so frictionless sweeps take v . (x_{k+1} - x_k), with the velocity v that a visit has at
-// hand anyway.
+// Restart (theta = 1, beta = 0) when the sweep turns against the last move: (y - x_{k+1}) . (x_{k+1} - x_k) > 0; any
+// positive weight of the contacts will do, so frictionless sweeps take v . (x_{k+1} - x_k), with the velocity v that a
+// visit has at hand anyway.
 //
-// With friction the sweep is no descent of anything, and momentum can drive it round in circles or apart. Then beta is kept
-// below a cap, which is lowered whenever the sweeps get nowhere, down to none: what is left is NLGS with its relaxation.
+// With friction the sweep is no descent of anything, and momentum can drive it round in circles or apart. Then beta is
+// kept below a cap, which is lowered whenever the sweeps get nowhere, down to none: what is left is NLGS with its
+// relaxation.
+//
 // Source: Nesterov (1983); O'Donoghue & Candes (2015), gradient scheme.
 #pragma once
 

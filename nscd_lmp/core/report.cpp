@@ -95,7 +95,8 @@ std::string describe(const Step &step)
   const Settings &s = step.settings();
   std::ostringstream text;
   text << "law " << s.law << ", " << (step.has_custom_solver() ? "a solver handed in" : describe_solver(s)) << ", tol "
-       << s.tol << (s.criterion == Stop::natural ? " (natural map)" : "") << ", " << s.walls.size() << (s.walls.size() == 1 ? " wall" : " walls")
+       << s.tol << (s.criterion == Stop::natural ? " (natural map)" : "") << ", " << s.walls.size()
+       << (s.walls.size() == 1 ? " wall" : " walls")
        << "; " << describe_model(s, step.state().friction) << "; " << describe_restitution(s)
        << "; one rank: no exchange";
   return text.str();

@@ -11,7 +11,8 @@ using nscd::Vec4;
 
 namespace {
 
-// Contacts between grains at random (rest solves them, as biases are not negative): many a body, some with an obstacle, one pair that touches twice.
+// Contacts between grains at random (rest solves them, as biases are not negative): many a body, some with an obstacle,
+// one pair that touches twice.
 struct Heap {
   nscd::AlignedVector<nscd::Body> bodies{};
   nscd::AlignedVector<Vec4> spins{};

@@ -12,24 +12,25 @@
 //   scaling     y = W_kk^(1/2) p, so that mass ratios of 1e6 leave a matrix S of unit diagonal.
 //   sweeps      a factorisation pays only once the face is nearly known. Projected Gauss-Seidel sweeps with Nesterov's
 //               momentum come first, until the contacts have kept their sides for `quiet` of them.
-//   proximal    S + eps I with + eps z on the right, z the last answer. Without it a hyperstatic (rank-deficient) W has no
-//               factorisation; moving z to the solution until the natural map of W itself vanishes makes the answer one
-//               of S. As long as the face stays, such a step is one back-substitution.
-//   old factor  the system on the face is solved by CG preconditioned with the last factor, in about as many iterations as
-//               contacts changed sides, and in one (= iterative refinement) with a fresh factor.
+//   proximal    S + eps I with + eps z on the right, z the last answer. Without it a hyperstatic (rank-deficient) W has
+//               no factorisation; moving z to the solution until the natural map of W itself vanishes makes the answer
+//               one of S. As long as the face stays, such a step is one back-substitution.
+//   old factor  the system on the face is solved by CG preconditioned with the last factor, in about as many iterations
+//               as contacts changed sides, and in one (= iterative refinement) with a fresh factor.
 //   safeguard   the plain method can cycle. Where the count of contacts on the wrong side has reached no new minimum in
 //               `patience` steps, eps is raised and a monotone step is taken from the best feasible point met so far:
 //               sweeps (twice as many each time), then a projected search towards the minimiser on their face. The
-//               objective falls strictly at these steps, so no face is met twice there; the sweeps converge by themselves.
+//               objective falls strictly at these steps, so no face is met twice there; the sweeps converge by
+//               themselves.
 //
 // Fails (reported, never silent):
-//   no solution   q_k < 0 on a zero row, or grains squeezed between walls with no way out: p grows as 1/eps, the natural
-//                 map stays up. The best point met is returned.
+//   no solution   q_k < 0 on a zero row, or grains squeezed between walls with no way out: p grows as 1/eps, the
+//                 natural map stays up. The best point met is returned.
 //   W indefinite or far from symmetric: only its lower triangle is factorised and the safeguard needs an objective.
-//   round-off     W p cancels against q. No method gets below machine precision times |W||p|: a column of 1000 grains of
-//                 masses 1 and 1e6 in turn is left with 1e-9 m/s.
-//   fill          a packing of n contacts takes O(n^(4/3)) memory and O(n^2) time: 2 ms for 1,500 contacts, 2 s for 30,000.
-//                 Beyond a few thousand contacts in three dimensions the sweeps alone are faster.
+//   round-off     W p cancels against q. No method gets below machine precision times |W||p|: a column of 1000 grains
+//                 of masses 1 and 1e6 in turn is left with 1e-9 m/s.
+//   fill          a packing of n contacts takes O(n^(4/3)) memory and O(n^2) time: 2 ms for 1,500 contacts, 2 s for
+//                 30,000. Beyond a few thousand contacts in three dimensions the sweeps alone are faster.
 //
 // Iterations are faces solved; the sweeps before the first one are not counted.
 #include "../delassus.hpp"
@@ -125,7 +126,8 @@ class ActiveSet {
     return face;
   }
 
-  // The natural map of W itself, at the projection of y, against tol and against the round-off of W p + q. Keeps the best.
+  // The natural map of W itself, at the projection of y, against tol and against the round-off of W p + q. Keeps the
+  // best.
   bool finished(const Vector &y)
   {
     const Vector x = y.cwiseMax(0);

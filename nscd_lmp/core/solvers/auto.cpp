@@ -1,12 +1,12 @@
 // AUTO: sweeps with momentum, and what comes after them where they would take longer than something else.
 //
-// Frictionless: APGS; where it seems to need more sweeps than a factorisation costs (columns, mass ratios, last digits of
-// small beds) the active set takes over from its iterate; should that not end either, APGS goes on.
-// The choice counts sweeps and contacts, never seconds: the same input gives the same bits.
+// Frictionless: APGS; where it seems to need more sweeps than a factorisation costs (columns, mass ratios, last digits
+// of small beds) the active set takes over from its iterate; should that not end either, APGS goes on. The choice
+// counts sweeps and contacts, never seconds: the same input gives the same bits.
 //
-// The cost of the active set in sweeps is that of a packing in space, n / 3 for n contacts (measured: 520 sweeps at 1,500
-// contacts, 14,000 at 32,000). With hardly more contacts than bodies they make columns and trees, which have no fill: then
-// it is that of an assembly.
+// The cost of the active set in sweeps is that of a packing in space, n / 3 for n contacts (measured: 520 sweeps at
+// 1,500 contacts, 14,000 at 32,000). With hardly more contacts than bodies they make columns and trees, which have no
+// fill: then it is that of an assembly.
 #include "../solver.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Sparse LDL^T of S_FF + eps I on a face F (a sorted list of contacts), and its use as a preconditioner on faces near F.
+// Sparse LDL^T of S_FF + eps I on a face F (a sorted list of contacts), and its use as a preconditioner on faces near
+// F.
 #pragma once
 
 #include "scaled_rows.hpp"

@@ -1,7 +1,7 @@
 // The minimum of a proximal problem on a face, with bounds left out: (S_AA + eps I) y_A = -b_A + eps z_A.
 //
-// By conjugate gradients preconditioned with the last factor, in about as many iterations as contacts have changed sides
-// since, and in one (iterative refinement) with a fresh factor.
+// By conjugate gradients preconditioned with the last factor, in about as many iterations as contacts have changed
+// sides since, and in one (iterative refinement) with a fresh factor.
 #pragma once
 
 #include "face_factor.hpp"
