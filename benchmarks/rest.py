@@ -1,9 +1,9 @@
 """What could be left out of a step: contacts without impulse, grains at rest, islands that could sleep.
 
-A bed settles under law gap. At times are printed: the share of contacts that end without impulse, of grains slower than
-a hundredth of g dt, the number of islands (grains that contacts connect; walls connect nothing) and the share of contacts
-in the largest one. An island may sleep when all of its grains rest: the last column is the share of contacts in such
-islands.
+A bed settles under law gap. At times are printed: the share of contacts that end without impulse, of grains slower
+than a hundredth of g dt, the number of islands (grains that contacts connect; walls connect nothing) and the share of
+contacts in the largest one. An island may sleep when all of its grains rest: the last column is the share of contacts
+in such islands.
 
     python benchmarks/rest.py --grains 500
 """

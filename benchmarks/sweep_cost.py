@@ -1,7 +1,9 @@
 """What a sweep, a step and a contact cost on settled beds, one thread.
 
-sweep   nanoseconds per contact and NLGS iteration of each local law: solver seconds / sum of contacts x
+sweep   nanoseconds per contact and iteration of each local law of NLGS and of APGS: solver seconds / sum of contacts x
         iterations, checks of the criterion included (law gap, zero start impulses, tol 1e-6)
+        Beside them are two bounds of the machine, measured in the same run: the time to read and write back the
+        contacts, and that of a visit's floating-point operations at the speed of a product of matrices.
 step    microseconds per step of all that is neither LAMMPS nor the solver: detection, biases, warm start,
         energy, update; against the limit of 20 us + 120 ns per particle
 memory  bytes that the fix holds, per contact: per-grain arrays and room to grow included; against 200
@@ -32,6 +34,7 @@ import numpy as np
 from discs import open_discs
 from heap import held_bytes
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR
+from machine_bounds import seconds_per_byte_updated, seconds_per_flop
 from numpy.typing import NDArray
 from record import Record, print_table
 from saved_state import SavedState
@@ -55,12 +58,14 @@ class Model:
     friction: float
     maxiter: int
     sweep_limit: float
+    flops: int  # of a visit with PDAS, counted in the code
+    bytes: int  # of a contact and its slide that a sweep reads and writes back; bodies stay in the cache
 
 
 MODELS = (
-    Model("frictionless", open_balls, "settled_bed", 0.0, 20000, 8.0),
-    Model("planar", open_discs, "settled_discs", 0.3, 1000, 15.0),
-    Model("spatial", open_balls, "settled_bed", 0.3, 1000, 25.0),
+    Model("frictionless", open_balls, "settled_bed", 0.0, 20000, 8.0, 35, 64),
+    Model("planar", open_discs, "settled_discs", 0.3, 1000, 15.0, 80, 88),
+    Model("spatial", open_balls, "settled_bed", 0.3, 1000, 25.0, 150, 128),
 )
 
 
@@ -137,7 +142,7 @@ def run_steps(bed: Bed, **options: Any) -> tuple[NDArray[Any], float]:
 
 def sweep_rows(beds: Sequence[Bed], record: Record) -> list[list[Any]]:
     """Measure all local laws on all models; they take turns."""
-    ways = [(bed, solver) for bed in beds for solver in nscd_lmp.LOCAL_LAWS]
+    ways = [(bed, solver) for bed in beds for solver in (*nscd_lmp.LOCAL_LAWS, "apgs")]
     costs: list[list[float]] = [[] for _ in ways]
     seen: list[NDArray[Any]] = [np.empty(0)] * len(ways)
     for _ in range(beds[0].repeats):
@@ -147,6 +152,7 @@ def sweep_rows(beds: Sequence[Bed], record: Record) -> list[list[Any]]:
             costs[k].append(1e9 * share * stats["seconds_solver"].sum() / visits)
             seen[k] = stats
     rows = []
+    flop = seconds_per_flop()
     for (bed, solver), cost, stats in zip(ways, costs, seen, strict=True):
         result = {
             "contacts": int(stats["contacts"].mean()),
@@ -155,8 +161,12 @@ def sweep_rows(beds: Sequence[Bed], record: Record) -> list[list[Any]]:
             "sweep_ns_median": float(np.median(cost)),
             "sweep_ns_limit": bed.model.sweep_limit,
         }
+        result["memory_bound_ns"] = (
+            1e9 * bed.model.bytes * seconds_per_byte_updated(bed.model.bytes * result["contacts"])
+        )
+        result["flop_bound_ns"] = 1e9 * bed.model.flops * flop
         record.add(part="sweep", **bed.parameters, law="gap", solver=solver, warmstart=False, **result)
-        rows.append([bed.grains, bed.model.name, nscd_lmp.LOCAL_LAWS[solver].title, *result.values()])
+        rows.append([bed.grains, bed.model.name, nscd_lmp.SOLVERS[solver].title, *result.values()])
     return rows
 
 
@@ -221,7 +231,7 @@ def main(words: Sequence[str] | None = None) -> None:
     scene = ["grains", "model", "contacts", "iterations\na step"]
     print_table(
         "Nanoseconds per contact and sweep",
-        [*scene[:2], "local law", *scene[2:], "best", "median", "limit"],
+        [*scene[:2], "solver", *scene[2:], "best", "median", "limit", "memory\nbound", "flop\nbound"],
         sweeps,
     )
     print_table(
