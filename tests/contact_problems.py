@@ -65,7 +65,7 @@ def reference(w: Any, q: Any, mu: Any, dim: int) -> tuple[AnyBlock, Array]:
 
 @dataclass(frozen=True)
 class Pile:
-    """Spheres with contacts, without friction: body_j (n,) is -1 at an obstacle; inverse_mass (m,) may be 0; v (m, 3)."""
+    """Spheres without friction: contacts (n,), body_j is -1 at an obstacle; inverse_mass (m,) may be 0; v (m, 3)."""
 
     body_i: NDArray[np.int64]
     body_j: NDArray[np.int64]
@@ -144,7 +144,7 @@ def lattice(side: int, seed: int) -> Pile:
 
 
 def column(masses: Any, speed: float = 1e-2) -> Pile:
-    """Return spheres on top of each other that all fall at the speed, the lowest first: p_k = speed sum_{l >= k} m_l."""
+    """Return spheres on top of each other that fall at one speed, the lowest first: p_k = speed sum_{l >= k} m_l."""
     masses = np.asarray(masses, dtype=float)
     n = len(masses)
     up = np.tile([0.0, 0.0, 1.0], (n, 1))

@@ -80,6 +80,43 @@ FILES = {
         },
         "friction_laws.png": None,
     },
+    "solvers": {
+        "solvers.csv": {
+            "part",
+            "case",
+            "grains",
+            "contacts",
+            "solver",
+            "tol",
+            "iterations",
+            "converged",
+            "residual",
+            "milliseconds",
+            "error",
+            "reference_residual",
+            "dt",
+            "steps",
+            "unconverged",
+            "solver_s",
+            "all_s",
+            "overlap",
+        },
+        "solvers.png": None,
+    },
+    "rest": {
+        "rest.csv": {
+            "grains",
+            "friction",
+            "dt",
+            "step",
+            "contacts",
+            "without_impulse",
+            "grains_at_rest",
+            "islands_with_contacts",
+            "largest_island",
+            "contacts_that_could_sleep",
+        }
+    },
     "accuracy": {
         "accuracy.csv": {
             "part",

@@ -19,11 +19,6 @@ SOLVERS = list(nscd_lmp.SOLVERS)
 FRICTIONAL_SOLVERS = list(nscd_lmp.FRICTIONAL_SOLVERS)
 TOL = 1e-11  # of the natural map; what velocities are off is that times the condition number on the active set, < 100
 NEAR = 1e-8  # times the largest velocity, about 1 m/s
-CYCLE = "momentum over Gauss-Seidel sweeps has no proof: it ends in a cycle at 1e-3"
-FAILING = {
-    ("apgs", "planar, rank-deficient"): CYCLE,
-    ("auto", "planar, rank-deficient"): "with friction it is apgs: " + CYCLE,
-}
 
 FRICTIONLESS = {
     "full rank": bodies(20, 1, 40, 1),
@@ -38,16 +33,10 @@ FRICTIONAL = {  # the blocks of a contact are full, and no two tangents respond 
 }
 
 
-def known_to_fail(solver: str, family: str) -> list[Any]:
-    """Return the mark of a pair in FAILING."""
-    reason = FAILING.get((solver, family))
-    return [pytest.mark.xfail(strict=True, reason=reason)] if reason else []
-
-
-def pairs(families: dict[str, Bodies]) -> list[Any]:
-    """Return every solver with every family it is for; those that are known to fail must fail."""
+def pairs(families: dict[str, Bodies]) -> list[tuple[str, str]]:
+    """Return every solver with every family it is for; the pairs that fail are in test_solver_families.py."""
     return [
-        pytest.param(name, family, marks=known_to_fail(name, family))
+        (name, family)
         for family in families
         for name, solver in nscd_lmp.SOLVERS.items()
         if solver.friction or families[family].dim == 1

@@ -49,27 +49,39 @@ class Momentum {
   double theta_ = 1, share_ = 0;
 };
 
-// The cap on momentum, and the share of their step that visits do once there is none, for sweeps with friction.
+// The cap on momentum for sweeps with friction, and the share of their step that visits do once there is none.
+//
+// Short solves want a low cap, for they end before circles matter, and long ones a high one: 1 - cap goes from 1/10 to 1/50
+// with the sweeps, and is doubled wherever they get nowhere.
 class Caution {
  public:
-  double cap() const { return 1 - gap_; }
+  double cap() const { return 1 - gap(); }
   double share() const { return relaxation_.share(); }
 
-  // After a sweep. Whether the cap has been lowered.
+  // After a sweep. Whether it has grown.
   bool grows(double corrected)
   {
-    if (gap_ == 1) {
+    ++sweeps_;
+    if (gap() == 1) {
       relaxation_.look(corrected);
       return false;
     }
     if (!plateau_.is_reached(corrected)) return false;
-    gap_ = std::min(1.0, 2 * gap_);
+    factor_ *= 2;
     plateau_ = {};
     return true;
   }
 
  private:
-  double gap_ = 0.05;
+  static constexpr double widest = 0.1, narrowest = 0.02, first_sweeps = 256;
+  double gap() const
+  {
+    const double base = std::clamp(widest * first_sweeps / std::max(sweeps_, 1), narrowest, widest);
+    return std::min(1.0, factor_ * base);
+  }
+
+  int sweeps_ = 0;
+  double factor_ = 1;
   Plateau plateau_;
   Relaxation relaxation_;
 };
