@@ -175,6 +175,7 @@ def draw(curves: Curves, path: Path) -> None:
         lines = {line.get_label(): line for ax in axes for line in ax.get_lines()}
         figure.legend(lines.values(), lines.keys(), loc="outside upper center", ncols=len(lines))
         save_figure(figure, path)
+    print(f"wrote {path}")
 
 
 def collect(given: argparse.Namespace) -> list[Case]:

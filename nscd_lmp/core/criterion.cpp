@@ -24,8 +24,8 @@ struct Sums {
   NSCD_INLINE void add_normal(double w, double w_inverse, double p, double v)
   {
     of.bipotential += w * std::max(0.0, -p);
-    of.penetration += std::max(0.0, -v);
-    const double residual = w * (p - std::max(0.0, p - v * w_inverse));
+    of.penetration += std::max(-v, 0.0);  // this order of arguments lets NaN through
+    const double residual = w * (p - std::max(p - v * w_inverse, 0.0));
     natural += residual * residual;
   }
 
@@ -115,8 +115,8 @@ NSCD_HOT Sums global(const GlobalProblem &problem, const double *u, const double
     const auto p = F::load(problem.p.data() + k * F::dim), v = F::load(u + k * F::dim);
     const Diagonal &d = problem.diagonals[k];
     if (d.w == 0) {  // nothing moves: what there is to see is whether it penetrates
-      sum.of.penetration += std::max(0.0, -v.n);
-      sum.natural += std::pow(std::min(0.0, v.n), 2);
+      sum.of.penetration += std::max(-v.n, 0.0);
+      sum.natural += std::pow(std::min(v.n, 0.0), 2);
       continue;
     }
     const double *own = local_velocity ? local_velocity + k * F::carried : nullptr;

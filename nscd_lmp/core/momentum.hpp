@@ -51,8 +51,8 @@ class Momentum {
 
 // The cap on momentum for sweeps with friction, and the share of their step that visits do once there is none.
 //
-// Short solves want a low cap, for they end before circles matter, and long ones a high one: 1 - cap goes from 1/10 to 1/50
-// with the sweeps, and is doubled wherever they get nowhere.
+// Short solves want a low cap, for they end before circles matter, and long ones a high one: 1 - cap goes from 1/10 to
+// 1/50 with the sweeps, and is doubled wherever they get nowhere.
 class Caution {
  public:
   double cap() const { return 1 - gap(); }

@@ -110,7 +110,7 @@ bool Step::solve_part(const Part &part)
   report_.seconds_solver += seconds(start, Clock::now());
   if (!std::isfinite(solved.criterion.total()))
     fail("solver ", settings_.solver,
-         " diverged: the criterion is not a number; take rho or gamma closer to its default");
+         " diverged: the criterion is not a number; take another solver, or rho or gamma closer to its default");
   report_.iterations += solved.iterations;
   // The criterion of the last solve, or of the one that failed.
   if (report_.converged || !solved.converged) report_.criterion = solved.criterion;

@@ -56,7 +56,10 @@ class Relay {
     if (report_.converged || left_.maxiter < 1) return;
     left_.alternative = alternative;
     left_.parameter = find_solver(solver).default_parameter;
+    const std::size_t first = left_.history ? left_.history->size() : 0;
     const SolverReport done = run(solver, problem_, left_);
+    for (std::size_t k = first; left_.history && k < left_.history->size(); ++k)
+      (*left_.history)[k].iterations += report_.iterations;
     report_.iterations += done.iterations;
     report_.criterion = done.criterion;
     report_.converged = done.converged;
