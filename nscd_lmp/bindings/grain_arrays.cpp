@@ -1,5 +1,8 @@
 #include "grain_arrays.hpp"
 
+#include "../core/state.hpp"
+
+#include <algorithm>
 #include <cmath>
 
 namespace nscd {
@@ -35,18 +38,19 @@ Vec4 GrainProblem::tangential(std::size_t k, const double *components) const
 }
 
 GrainProblem::GrainProblem(const GrainArrays &a) :
-    arrays_(a), bodies_(a.bodies + 1), spins_(a.bodies + 1), contacts_(a.contacts),
+    arrays_(a), bodies_(a.bodies + obstacle_copies), spins_(bodies_.size()), contacts_(a.contacts),
     problem_{bodies_, contacts_, 0, norm(a.q, a.contacts * a.dim), workspace_}
 {
   const Model model = model_of(a.dim);
   for (std::size_t i = 0; i < a.bodies; ++i) bodies_[i] = Body{0, 0, 0, a.inverse_mass[i]};
-  bodies_[a.bodies] = Body{};  // every obstacle
+  std::fill(bodies_.begin() + a.bodies, bodies_.end(), Body{});  // obstacles
   if (model == Model::planar) planar_.resize(a.contacts);
   if (model == Model::spatial) spatial_.resize(a.contacts);
   problem_.sliding = {model, a.spin_response, 0, model == Model::frictionless ? nullptr : spins_.data(),
                       planar_.data(), spatial_.data()};
   for (std::size_t k = 0; k < a.contacts; ++k) {
-    const auto body = [&](std::int32_t i) { return i < 0 ? std::int32_t(a.bodies) : i; };
+    const auto obstacle = std::int32_t(a.bodies + k % obstacle_copies);
+    const auto body = [&](std::int32_t i) { return i < 0 ? obstacle : i; };
     Contact &c = contacts_[k];
     c = {direction(k, 0), a.q[k * a.dim], 0, a.start[k * a.dim], body(a.body_i[k]), body(a.body_j[k])};
     c.w_inverse = 1 / (bodies_[c.i][3] + bodies_[c.j][3]);
