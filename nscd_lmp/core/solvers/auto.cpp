@@ -42,6 +42,12 @@ SolverReport run(std::string_view solver, GlobalProblem &problem, const SolverOp
   return find_solver(solver).solve_global(problem, options);
 }
 
+template <class AnyProblem>
+double interior_point_in_sweeps(const AnyProblem &problem)
+{
+  return std::max(300.0, 14 * double(count(problem)));
+}
+
 // One solver after another on the same iterate; iterations add up.
 template <class AnyProblem>
 class Relay {
@@ -78,12 +84,9 @@ template <class AnyProblem>
 SolverReport choose(AnyProblem &problem, const SolverOptions &options)
 {
   Relay relay(problem, options);
-  if (has_friction(problem)) {
-    relay.hand_to("apgs");
-    return relay.report();
-  }
-  relay.hand_to("apgs", active_set_in_sweeps(problem));
-  relay.hand_to("active_set");
+  const bool friction = has_friction(problem);
+  relay.hand_to("apgs", friction ? interior_point_in_sweeps(problem) : active_set_in_sweeps(problem));
+  relay.hand_to(friction ? "interior_point" : "active_set");
   relay.hand_to("apgs");
   return relay.report();
 }
