@@ -60,7 +60,7 @@ def measure(scene: Scene, repeats: int) -> dict[str, ScriptRun]:
     """Return the least disturbed run of each method; they take turns, so that a busy minute hits all of them."""
     best: dict[str, ScriptRun] = {}
     for _ in range(repeats * scene.more_repeats):
-        for solver in nscd_lmp.LOCAL_LAWS:
+        for solver in scene.paper:
             run = run_script(scene.script, solver=solver, **scene.variables)
             kept = best.get(solver)
             if kept is None or run.wall_seconds < kept.wall_seconds:

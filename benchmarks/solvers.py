@@ -14,6 +14,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Sequence
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
@@ -159,7 +160,7 @@ def draw(curves: Curves, path: Path) -> None:
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(3.6 * wide, 3.2 * high), layout="constrained")
         axes = figure.subplots(high, wide, squeeze=False).ravel()
-        looks = dict(zip(labels, LOOKS, strict=False))
+        looks = dict(zip(labels, cycle(LOOKS), strict=False))
         for ax, (name, solvers) in zip(axes, curves.items(), strict=False):
             for label, points in solvers.items():
                 if points:

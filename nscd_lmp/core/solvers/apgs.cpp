@@ -3,7 +3,7 @@
 //   y = x_k + beta_k (x_k - x_{k-1}),  x_{k+1} = one sweep of exact visits from y
 //
 // Needs the square root of NLGS' sweeps, about: error modes of a force chain that a sweep shrinks by 1 - c shrink by
-// 1 - sqrt(c). Costs 1.1 to 1.2 sweeps of NLGS each.
+// 1 - sqrt(c). Each costs 1.1 sweeps of NLGS, 1.5 with friction.
 // Makes exact: the motion, p >= 0 and |p_t| <= mu p_n.
 // Fails: Gauss-Seidel's sweep is no gradient step, so momentum has no proof; restarts keep it on course.
 //
@@ -19,8 +19,8 @@ namespace nscd {
 
 namespace {
 
-// PDAS' exact visit without its branch: under momentum contacts change sides often, and a wrong guess costs more than the
-// wait for the maximum.
+// PDAS' exact visit without its branch: under momentum contacts change sides often, and a wrong guess costs more than
+// the wait for the maximum.
 struct Exact : Pdas {
   static Local visit(Local now, double v, double w_inverse, double)
   {
