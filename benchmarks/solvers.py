@@ -31,17 +31,20 @@ import nscd_lmp
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12)
 PAPER_TOLERANCES = (1e-7, 1e-10)  # m/s
 ENOUGH = 2.0  # seconds after which a solver is given no tighter tolerance
-MAXITER = {"active_set": 300}
+MAXITER = {"active_set": 300, "interior_point": 150}
+FACTORISABLE = 5000  # contacts, beyond which a factorisation takes seconds
 BASE = "pdas"  # what others are measured against: NLGS
 PARTS = ("problems", "paper", "runs")
 LOOKS = cycler(color=["#7f8c8d", "#d35400", "#21618c", "#1e8449", "#8e44ad", "#b7950b"])
 Curves = dict[str, dict[str, list[tuple[float, float]]]]
 
 
-def ways(friction: bool) -> list[tuple[str, str, dict[str, Any]]]:
-    """Return label, solver and parameters; SOR is SBP with rho beyond 1."""
+def ways(case: Case) -> list[tuple[str, str, dict[str, Any]]]:
+    """Return label, solver and parameters of what is worth a try; SOR is SBP with rho beyond 1."""
+    friction = case.problem.mu is not None
+    slow = {"interior_point"} if len(case.problem) > FACTORISABLE else set()
     names = ["pdas", *[name for name, solver in nscd_lmp.SOLVERS.items() if solver.kind == "global"]]
-    some = [(name, name, {}) for name in names if nscd_lmp.SOLVERS[name].friction or not friction]
+    some = [(n, n, {}) for n in names if n not in slow and (nscd_lmp.SOLVERS[n].friction or not friction)]
     return some if friction else [*some[:1], ("SOR 1.8", "sbp", {"rho": 1.8}), *some[1:]]
 
 
@@ -57,7 +60,7 @@ def solve(case: Case, solver: str, repeats: int, **options: Any) -> tuple[nscd_l
 
 def find_reference(case: Case) -> nscd_lmp.Solution:
     """Return the best solution that any solver finds."""
-    names = ["auto"] if len(case.problem) > 5000 or case.problem.mu is not None else ["auto", "active_set"]
+    names = ["auto"] if len(case.problem) > FACTORISABLE or case.problem.mu is not None else ["auto", "active_set"]
     found = [solve(case, name, 1, tol=1e-14, maxiter=20000)[0] for name in names]
     return min(found, key=lambda solution: solution.residual)
 
@@ -66,7 +69,7 @@ def compare(case: Case, record: Record, repeats: int) -> dict[str, list[tuple[fl
     """Return points (error in m/s, milliseconds) of each solver."""
     reference = find_reference(case)
     curves: dict[str, list[tuple[float, float]]] = {}
-    for label, solver, parameters in ways(case.problem.mu is not None):
+    for label, solver, parameters in ways(case):
         points = curves.setdefault(label, [])
         for tol in TOLERANCES:
             solution, milliseconds = solve(case, solver, repeats, tol=tol, **parameters)
@@ -103,8 +106,8 @@ def precision_rows(case: Case, record: Record) -> list[list[Any]]:
 def paper_rows(case: Case, record: Record, repeats: int) -> list[list[Any]]:
     """Return a row a solver: milliseconds to the two values of criterion (42), and the ratio to NLGS."""
     taken: dict[str, list[float | None]] = {}
-    for label, solver, parameters in ways(case.problem.mu is not None):
-        if solver == "active_set" and len(case.problem) > 5000:
+    for label, solver, parameters in ways(case):
+        if solver == "active_set" and len(case.problem) > FACTORISABLE:
             continue
         taken[label] = []
         for tol in PAPER_TOLERANCES:
@@ -166,8 +169,10 @@ def draw(curves: Curves, path: Path) -> None:
                 if points:
                     errors, milliseconds = zip(*points, strict=True)
                     floor = [max(error, 1e-15) for error in errors]
-                    ax.loglog(floor, milliseconds, marker="o", markersize=3, label=label, **looks[label])
+                    dash = "--" if label == "auto" else "-"  # it lies on the line of what it chose
+                    ax.loglog(floor, milliseconds, dash, marker="o", markersize=3, label=label, **looks[label])
             ax.set_title(name)
+            widen(ax)
             ax.invert_xaxis()
         for ax in axes[len(curves) :]:
             ax.set_axis_off()
@@ -177,6 +182,15 @@ def draw(curves: Curves, path: Path) -> None:
         figure.legend(lines.values(), lines.keys(), loc="outside upper center", ncols=len(lines))
         save_figure(figure, path)
     print(f"wrote {path}")
+
+
+def widen(ax: Any) -> None:
+    """Let both axes span two decades at least, so that their labels have room."""
+    for low_high, limit in ((ax.get_xlim(), ax.set_xlim), (ax.get_ylim(), ax.set_ylim)):
+        low, high = low_high
+        if high < 100 * low:
+            middle = (low * high) ** 0.5
+            limit(middle / 10, middle * 10)
 
 
 def collect(given: argparse.Namespace) -> list[Case]:

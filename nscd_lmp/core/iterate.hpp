@@ -55,7 +55,7 @@ class Outlook {
     double value = INFINITY;
     void add(double v) { value = std::min(value, v); }
   };
-  static int first(double alternative) { return std::max(32, int(alternative / 4)); }
+  static int first(double alternative) { return std::max(8, int(alternative / 4)); }
 
   const double alternative_, goal_;
   int sweeps_ = 0, end_;
