@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from settled_bed import open_balls, open_bed
+from settled_bed import open_bed
 
 import nscd_lmp
 
@@ -86,9 +85,4 @@ def velocity_error(solution: nscd_lmp.Solution, reference: nscd_lmp.Solution) ->
     return float(np.abs(solution.velocity - reference.velocity).max(initial=0.0))
 
 
-def reference(case: Case, solver: str, **options: Any) -> nscd_lmp.Solution:
-    """Return the solution that others are measured against."""
-    return nscd_lmp.solve(case.problem, solver, unconverged="ignore", **options)
-
-
-__all__ = ["Case", "bed", "columns", "open_balls", "reference", "velocity_error"]
+__all__ = ["Case", "bed", "columns", "velocity_error"]

@@ -158,6 +158,7 @@ class ContactProblem:
         axes, q_t, response = _friction_arrays(n, friction, tangents, slip, spin_response)
         normals = _shaped("normal", normal, (n, 3))
         checks.check_frames(normals, axes)
+        normals, axes = _orthonormal(normals, axes)
         spheres = Spheres(i, j, masses, normals, axes, response)
         checks.check_movable(spheres.normal_response(), q_n)
         dim = 1 + axes.shape[1]
@@ -205,6 +206,18 @@ def _indices(name: str, values: ArrayLike, contacts: int) -> NDArray[np.int32]:
         raise NscdError(f"{name}, {array.dtype} of shape {array.shape}, must be integers of shape ({contacts},)")
     limits = np.iinfo(np.int32)
     return np.clip(array, limits.min, limits.max).astype(np.int32)
+
+
+def _orthonormal(normals: Floats, axes: Floats) -> tuple[Floats, Floats]:
+    """Return frames that are orthonormal to round-off; given are ones that nearly are, in single precision say."""
+    normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    exact: list[Floats] = []
+    for a in range(axes.shape[1]):
+        axis = axes[:, a]
+        for other in (normals, *exact):
+            axis = axis - other * np.einsum("ij,ij->i", axis, other)[:, None]
+        exact.append(axis / np.linalg.norm(axis, axis=1, keepdims=True))
+    return normals, np.stack(exact, axis=1) if exact else axes
 
 
 def _friction_arrays(

@@ -1,6 +1,7 @@
 """The solver-level door: any contact problem, any solver of the registry, without LAMMPS."""
 
 import math
+import operator
 import warnings
 from dataclasses import dataclass, field
 from typing import Any, Literal
@@ -102,15 +103,23 @@ def solve(
     UserWarning
         With ``unconverged="warn"`` where `tol` is not reached.
     """
+    if not isinstance(problem, ContactProblem):
+        raise _core.NscdError(f"the problem is a {type(problem).__name__} and must be a ContactProblem")
     parameter = _parameter(solver, rho, gamma)
-    _check(tol, maxiter, criterion, unconverged)
+    tol, maxiter = _check(tol, maxiter, criterion, unconverged)
     options = {"solver": solver, "tol": tol, "maxiter": maxiter, "criterion": criterion, "parameter": parameter}
     found = _run(problem, _start(problem, warmstart), options)
     if not found.converged and unconverged != "ignore":
         unit = " m/s" if criterion == "paper" else ""
+        remedy = "raise maxiter or tol, or choose another solver"
+        if found.iterations < maxiter:
+            remedy = (
+                "it gets no further, for tol lies below round-off, the problem has no solution, or the solver does not"
+                " find it: raise tol or choose another solver"
+            )
         message = (
             f"solver {solver} ended after {found.iterations} iterations with the {criterion} criterion at"
-            f" {found.residual:.3g}{unit}, above tol = {tol:.3g}: raise maxiter or tol, or choose another solver"
+            f" {found.residual:.3g}{unit}, above tol = {tol:.3g}: {remedy}"
         )
         if unconverged == "error":
             raise _core.NscdError(message)
@@ -136,8 +145,12 @@ def _parameter(solver: str, rho: float | None, gamma: float | None) -> float | N
     return value
 
 
-def _check(tol: float, maxiter: int, criterion: str, unconverged: str) -> None:
-    """Refuse settings out of range."""
+def _check(tol: float, maxiter: int, criterion: str, unconverged: str) -> tuple[float, int]:
+    """Return `tol` and `maxiter` as numbers; refuse settings out of range."""
+    try:
+        tol, maxiter = float(tol), operator.index(maxiter)
+    except (TypeError, ValueError):
+        raise _core.NscdError(f"tol = {tol!r} must be a number and maxiter = {maxiter!r} a whole number") from None
     if not (tol > 0 and math.isfinite(tol)):
         raise _core.NscdError(f"tol = {tol} must be > 0: it is the value of the criterion at which a problem is solved")
     if not 1 <= maxiter < 2**31:
@@ -148,12 +161,13 @@ def _check(tol: float, maxiter: int, criterion: str, unconverged: str) -> None:
     ):
         if value not in choices:
             raise _core.NscdError(f"unknown {name} {value!r}: choose one of {', '.join(choices)}")
+    return tol, maxiter
 
 
 def _start(problem: ContactProblem, warmstart: ArrayLike | Solution | None) -> Floats:
-    """Return the impulses to start from, (n, dim)."""
+    """Return the impulses to start from, (n, dim): zeros too where nothing moves, for they are the solution."""
     shape = (len(problem), problem.dim)
-    if warmstart is None:
+    if warmstart is None or not problem.q.any():
         return np.zeros(shape)
     start = problem_checks.floats("warmstart", warmstart.impulse if isinstance(warmstart, Solution) else warmstart)
     if start.shape not in (shape, problem.q.shape):

@@ -225,3 +225,69 @@ def test_auto_ends_where_apgs_alone_does_not(masses: str, door: str) -> None:
     assert not alone.converged and alone.iterations == 2000
     assert relay.converged and relay.iterations < 200
     assert np.abs(relay.velocity).max() <= options["tol"] * 1e-2
+
+
+def true_residual(problem: Any, solution: Any) -> float:
+    """Return the relative natural map of the impulses alone, W p + q formed anew."""
+    u = problem.delassus() @ solution.impulse + problem.q
+    w = problem.delassus().diagonal()
+    return float(np.linalg.norm(np.minimum(u, w * solution.impulse)) / np.linalg.norm(problem.q))
+
+
+@pytest.mark.parametrize("solver", ["apgs", "auto", "active_set"])
+def test_claims_hold_for_the_impulses_alone(solver):
+    # thousands of sweeps, in which momentum makes round-off between bodies and impulses grow
+    problem = nscd_lmp.ContactProblem.from_spheres(
+        body_i=np.arange(1000),
+        body_j=np.arange(1000) - 1,
+        inverse_mass=np.ones(1000),
+        normal=np.tile([0.0, 0.0, 1.0], (1000, 1)),
+        velocity=np.concatenate([[-5e-3], np.zeros(999)]),
+    )
+    found = nscd_lmp.solve(problem, solver, tol=1e-8)
+    assert found.converged
+    assert true_residual(problem, found) < 1e-8
+
+
+@pytest.mark.parametrize("solver", nscd_lmp.SOLVERS)
+def test_impulses_too_large_for_their_digits_are_not_called_a_solution(solver):
+    # two grains pushed together from both sides: no solution, and at 1e16 N s a change of 1 m/s is round-off
+    squeezed = nscd_lmp.ContactProblem([[1.0, -1.0], [-1.0, 1.0]], [-1.0, -1.0])
+    found = nscd_lmp.solve(squeezed, solver, warmstart=[1e16, 1e16], maxiter=200, unconverged="ignore")
+    assert not found.converged
+
+
+def test_auto_ends_where_the_active_set_has_reached_round_off():
+    masses = np.where(np.arange(300) % 2, 1.0, 1e6)
+    problem = nscd_lmp.ContactProblem.from_spheres(
+        body_i=np.arange(300),
+        body_j=np.arange(300) - 1,
+        inverse_mass=1 / masses,
+        normal=np.tile([0.0, 0.0, 1.0], (300, 1)),
+        velocity=np.concatenate([[-5e-3], np.zeros(299)]),
+    )
+    best = nscd_lmp.solve(problem, "active_set", tol=1e-12, unconverged="ignore")
+    found = nscd_lmp.solve(problem, "auto", tol=1e-12, unconverged="ignore")
+    assert not found.converged
+    assert found.iterations < 200
+    assert true_residual(problem, found) <= 10 * true_residual(problem, best)
+
+
+def test_frames_in_single_precision_are_made_orthonormal():
+    rng = np.random.default_rng(0)
+    normal = rng.normal(size=(40, 3))
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    first = np.cross(normal, rng.normal(size=(40, 3)))
+    first /= np.linalg.norm(first, axis=1)[:, None]
+    frames = [part.astype(np.float32) for part in (normal, np.stack([first, np.cross(normal, first)], axis=1))]
+    i = rng.integers(0, 20, 40)
+    problem = nscd_lmp.ContactProblem.from_spheres(
+        i, np.where(rng.random(40) < 0.2, -1, (i + 1) % 20), np.ones(20), frames[0], rng.uniform(-1, 1, 40),
+        friction=0.3, tangents=frames[1], slip=rng.uniform(-1, 1, (40, 2)), spin_response=2.5,
+    )  # fmt: skip
+    found = nscd_lmp.solve(problem, "pdas", tol=1e-10, maxiter=100000)
+    w = problem.delassus()
+    formed = (w @ found.impulse.ravel()).reshape(-1, 3) + problem.q
+    np.testing.assert_allclose(
+        found.velocity, formed, rtol=0, atol=1e-12 * (1 + abs(w).sum(axis=1).max() * abs(found.impulse).max())
+    )

@@ -65,6 +65,20 @@ GrainProblem::GrainProblem(const GrainArrays &a) :
   }
 }
 
+void GrainProblem::rebuild_bodies()
+{
+  for (Body &b : bodies_) b = Body{0, 0, 0, b[3]};
+  std::fill(spins_.begin(), spins_.end(), Vec4{});
+  for (std::size_t k = 0; k < arrays_.contacts; ++k) {
+    const Contact &c = contacts_[k];
+    apply_impulse(c, c.impulse, bodies_.data());
+    with_friction(problem_.sliding.model, [&]<class M>(M) {
+      apply_tangential<M>(c, problem_.sliding.slides<M>()[k].impulse, arrays_.spin_response, bodies_.data(),
+                          spins_.data());
+    });
+  }
+}
+
 std::vector<double> GrainProblem::impulses() const
 {
   std::vector<double> p(arrays_.contacts * arrays_.dim);

@@ -27,6 +27,8 @@ class GrainProblem {
   GrainProblem &operator=(const GrainProblem &) = delete;
 
   Problem &problem() { return problem_; }
+  // Bodies from their impulses alone, so that velocities() has no round-off of the way there.
+  void rebuild_bodies();
   std::vector<double> impulses() const;    // (n, dim) along normal and tangents
   std::vector<double> velocities() const;  // the same, q included
 

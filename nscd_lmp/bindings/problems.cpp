@@ -102,7 +102,13 @@ nb::dict solve_spheres(Array<double> inverse_mass, Array<std::int32_t> body_i, A
                        tangents.data(), q.data(), mu.size() ? mu.data() : nullptr, start.data(), spin_response});
   std::vector<SolverReport> history;
   const Request request = make_request(solver, tol, maxiter, criterion, parameter, history);
-  nb::dict d = outcome(request, [&] { return request.solver.solve(grains.problem(), request.options); });
+  nb::dict d = outcome(request, [&] {
+    SolverReport report = request.solver.solve(grains.problem(), request.options);
+    grains.rebuild_bodies();
+    report.criterion = measure(grains.problem());
+    report.converged = solved(report.criterion, request.options);
+    return report;
+  });
   add_solution(d, n, dim, grains.impulses(), grains.velocities());
   return d;
 }

@@ -21,17 +21,18 @@ struct Sums {
   double natural = 0;  // (m/s)^2
 
   // What is as without friction; v includes the bias.
-  NSCD_INLINE void add_normal(double w, double w_inverse, double p, double v)
+  NSCD_INLINE void add_normal(double w, double p, double v)
   {
     of.bipotential += w * std::max(0.0, -p);
     of.penetration += std::max(-v, 0.0);  // this order of arguments lets NaN through
-    const double residual = w * (p - std::max(p - v * w_inverse, 0.0));
+    // w (p - max(0, p - v / w)) without cancellation, and v if that is no number.
+    const double residual = w * p < v ? w * p : v;
     natural += residual * residual;
   }
 
-  NSCD_INLINE void add_frictionless(double w, double w_inverse, double p, double v)
+  NSCD_INLINE void add_frictionless(double w, double p, double v)
   {
-    add_normal(w, w_inverse, p, v);
+    add_normal(w, p, v);
     of.bipotential += std::abs(v * p);
   }
 
@@ -39,14 +40,15 @@ struct Sums {
   NSCD_INLINE void add_frictional(const Own &own, const Split<Tangent> &p, const Split<Tangent> &v,
                                   double tangential_scale)
   {
-    add_normal(own.w, own.w_inverse, p.n, v.n);
+    add_normal(own.w, p.n, v.n);
     // What pushes and separates: v p of small grains is too small a number to see it, and friction depends on p.
     of.bipotential += std::max(0.0, std::min(v.n, p.n / own.w_inverse));
     const double radius = coulomb_radius(own.mu, p.n);
     if (std::isinf(own.mu)) of.bipotential += std::abs(v.n * p.n);
     else of.bipotential += std::abs(v.n * p.n + inner(v.t, p.t) + radius * length(v.t));
-    const Tangent projected = onto_ball<Tangent>(p.t - v.t * (1 / own.wt), radius);
-    const double residual = own.wt * length(p.t - projected);
+    const Tangent trial = p.t - v.t * (1 / own.wt);
+    const bool sticks = inner(trial, trial) <= radius * radius;
+    const double residual = sticks ? length(v.t) : own.wt * length(p.t - onto_ball<Tangent>(trial, radius));
     of.bipotential += tangential_scale * residual;
     natural += residual * residual;
   }
@@ -78,7 +80,7 @@ NSCD_HOT Sums frictionless(const Problem &problem, const double *local_velocity)
   for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
     const Contact &c = problem.contacts[k];
     const double v = normal_velocity(c, bodies) + c.bias;
-    sum.add_frictionless(1 / c.w_inverse, c.w_inverse, c.impulse, v);
+    sum.add_frictionless(1 / c.w_inverse, c.impulse, v);
     if (local_velocity) sum.of.motion += std::abs(local_velocity[k] - v);
   }
   return sum;
@@ -121,7 +123,7 @@ NSCD_HOT Sums global(const GlobalProblem &problem, const double *u, const double
     }
     const double *own = local_velocity ? local_velocity + k * F::carried : nullptr;
     if constexpr (F::dim == 1) {
-      sum.add_frictionless(d.w, 1 / d.w, p.n, v.n);
+      sum.add_frictionless(d.w, p.n, v.n);
       if (own) sum.of.motion += std::abs(*own - v.n);
     } else {
       sum.add_frictional<Tangent>({d.w, 1 / d.w, d.wt, problem.friction(k)}, p, v, tangential_scale);

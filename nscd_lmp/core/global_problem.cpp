@@ -41,7 +41,11 @@ void find_diagonals(GlobalProblem &problem)
 double free_norm(const GlobalProblem &problem)
 {
   double sum = 0;
-  for (const double v : problem.q) sum += v * v;
+  const int dim = problem.dim();
+  for (std::size_t k = 0; k < problem.contacts(); ++k) {
+    const double *block = problem.w.diagonal(k);
+    for (int i = 0; block && *block != 0 && i < dim; ++i) sum += problem.q[k * dim + i] * problem.q[k * dim + i];
+  }
   return std::sqrt(sum);
 }
 

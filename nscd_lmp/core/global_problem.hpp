@@ -35,7 +35,7 @@ struct GlobalProblem {
 
 void find_diagonals(GlobalProblem &problem);
 
-// ||q||_2, m/s.
+// ||q||_2 of the contacts that an impulse can move, m/s.
 double free_norm(const GlobalProblem &problem);
 
 }    // namespace nscd

@@ -3,10 +3,10 @@
 //   y = x_k + beta (x_k - x_{k-1}),  x_{k+1} = sweep(y)
 //   theta' = (1 + sqrt(1 + 4 theta^2)) / 2,  beta = (theta - 1) / theta'
 //
-// A sweep moves bodies linearly with the impulses, so both are extrapolated alike and stay consistent.
-// Restart (theta = 1, beta = 0) when the sweep turns against the last move: (y - x_{k+1}) . (x_{k+1} - x_k) > 0; any
-// positive weight of the contacts will do, so frictionless sweeps take v . (x_{k+1} - x_k), with the velocity v that a
-// visit has at hand anyway.
+// A sweep moves bodies linearly with the impulses, so both are extrapolated alike; what round-off leaves between them is
+// taken away before a problem is called solved (solvers/apgs.cpp).
+// Restart (theta = 1, beta = 0) when the sweep turns against the last move, with the diagonal of W as weight:
+// (y - x_{k+1}) . (x_{k+1} - x_k) > 0.
 //
 // With friction the sweep is no descent of anything, and momentum can drive it round in circles or apart. Then beta is
 // kept below a cap, which is lowered whenever the sweeps get nowhere, down to none: what is left is NLGS with its

@@ -44,14 +44,15 @@ NSCD_HOT Swept sweep(Problem &problem, [[maybe_unused]] double *carried, double 
     local = Law::visit(local, v, c.w_inverse, parameter);
     if constexpr (Law::carries_velocity) carried[k] = local.velocity;
     const double dp = local.impulse - start;
+    const double corrects = dp * (bi[3] + bj[3]);
     if constexpr (accelerated) {
-      against += v * (local.impulse - c.impulse);
+      against -= corrects * (local.impulse - c.impulse);
       previous[k] = c.impulse;
     }
     c.impulse = local.impulse;
     bodies[c.i] = bi + c.normal * (dp * bi[3]);
     bodies[c.j] = bj - c.normal * (dp * bj[3]);
-    corrected += std::abs(dp) * (bi[3] + bj[3]);
+    corrected += std::abs(corrects);
   }
   return {corrected, against};
 }

@@ -19,6 +19,7 @@ enum class Stop { paper, natural };
 struct SolverReport {
   int iterations = 0;
   bool converged = true;
+  bool at_round_off = false;  // no solver gets further
   Criterion criterion;
 };
 

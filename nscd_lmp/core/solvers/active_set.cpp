@@ -79,6 +79,8 @@ class ActiveSet {
     return faces_;
   }
 
+  bool at_round_off() const { return at_round_off_; }
+
  private:
   void iterate()
   {
@@ -139,7 +141,7 @@ class ActiveSet {
         size += std::abs(term);
       }
       const double root = s_.root[k];
-      map += std::pow(root > 0 ? root * (x[k] - std::max(x[k] - v, 0.0)) : std::min(q_[k], 0.0), 2);
+      map += std::pow(root > 0 ? root * (x[k] < v ? x[k] : v) : std::min(q_[k], 0.0), 2);
       round_off += std::pow(root * size, 2);
     }
     const double residual = std::sqrt(map), floor = std::numeric_limits<double>::epsilon() * std::sqrt(round_off);
@@ -147,7 +149,8 @@ class ActiveSet {
       answer_residual_ = residual;
       answer_ = x;
     }
-    return residual <= std::max(tol_ * q_norm_, floor);
+    at_round_off_ = residual <= floor;
+    return at_round_off_ || residual <= tol_ * q_norm_;
   }
 
   void remember()
@@ -208,12 +211,12 @@ class ActiveSet {
     Vector last = y_;
     Momentum momentum;
     for (int done = 0, kept = 0; done < most && kept < calm; ++done) {
-      const Vector now = y_;
+      now_ = y_;
       y_ += momentum.share() * (y_ - last);
-      const Vector start = y_;
+      start_ = y_;
       kept = proximal_.sweep(y_) ? 0 : kept + 1;
-      momentum.move_on((start - y_).dot(y_ - now));
-      last = now;
+      momentum.move_on((start_ - y_).dot(y_ - now_));
+      last.swap(now_);
     }
   }
 
@@ -228,7 +231,9 @@ class ActiveSet {
   Vector answer_;  // feasible point of least natural map
   double answer_residual_ = infinity, idle_residual_ = infinity;
   int idle_ = 0, safe_sweeps_ = first_safe_sweeps, faces_ = 0;
+  bool at_round_off_ = false;
   FaceMinimum minimum_;
+  Vector now_, start_;  // of sweeps
 };
 
 SolverReport active_set(GlobalProblem &problem, const SolverOptions &options)
@@ -240,7 +245,9 @@ SolverReport active_set(GlobalProblem &problem, const SolverOptions &options)
   find_diagonals(problem);
   // (42) has impulses in it: its tol may lie below any fraction of |q|, so it gets round-off.
   const double tol = options.stop == Stop::natural ? options.tol : 0;
-  report.iterations = std::max(1, ActiveSet(problem, tol, options.maxiter).solve(problem.p));
+  ActiveSet solver(problem, tol, options.maxiter);
+  report.iterations = std::max(1, solver.solve(problem.p));
+  report.at_round_off = solver.at_round_off();
   std::vector<double> u(n);
   problem.w.multiply(problem.p.data(), u.data());
   for (std::size_t k = 0; k < n; ++k) u[k] += problem.q[k];

@@ -38,62 +38,121 @@ NSCD_HOT void extrapolate_vectors(double share, std::size_t count, Vec4 *vectors
   }
 }
 
-// Bodies and their spins as the last sweep left them, to extrapolate from.
+// Bodies and their spins, as they were at the start and as the last sweep left them, to extrapolate from.
+//
+// Round-off between them and the impulses grows by 1 / (1 - beta): `restore` gives bodies that carry their impulses.
 class BodyMomentum {
  public:
   explicit BodyMomentum(Problem &problem) : problem_(problem), count_(problem.bodies.size())
   {
     AlignedVector<Vec4> &kept = problem.workspace.vectors;
-    kept.assign(problem.bodies.begin(), problem.bodies.end());
-    if (problem.sliding.spins) kept.insert(kept.end(), problem.sliding.spins, problem.sliding.spins + count_);
+    kept.clear();
+    for (int copies = 0; copies < 2; ++copies) {
+      kept.insert(kept.end(), problem.bodies.begin(), problem.bodies.end());
+      if (problem.sliding.spins) kept.insert(kept.end(), problem.sliding.spins, problem.sliding.spins + count_);
+    }
   }
 
   void extrapolate(double share)
   {
-    Vec4 *const last = problem_.workspace.vectors.data();
+    Vec4 *const last = problem_.workspace.vectors.data() + kept_each();
     extrapolate_vectors(share, count_, problem_.bodies.data(), last);
     if (problem_.sliding.spins) extrapolate_vectors(share, count_, problem_.sliding.spins, last + count_);
   }
 
+  // add(k) hands contact k's bodies what it has gained since the start. The last sweep is moved along, or the next one
+  // would take the correction for momentum.
+  template <class Add>
+  void restore(Add add)
+  {
+    const Vec4 *const first = problem_.workspace.vectors.data();
+    move_last(-1);
+    std::copy(first, first + count_, problem_.bodies.begin());
+    if (problem_.sliding.spins) std::copy(first + count_, first + 2 * count_, problem_.sliding.spins);
+    for (std::size_t k = 0; k < problem_.contacts.size(); ++k) add(k);
+    move_last(1);
+  }
+
  private:
+  // By the bodies' own velocities; the inverse masses come back.
+  void move_last(double sign)
+  {
+    Vec4 *const last = problem_.workspace.vectors.data() + kept_each();
+    for (std::size_t i = 0; i < count_; ++i) {
+      last[i] += problem_.bodies[i] * sign;
+      if (problem_.sliding.spins) last[count_ + i] += problem_.sliding.spins[i] * sign;
+    }
+  }
+
+  std::size_t kept_each() const { return problem_.sliding.spins ? 2 * count_ : count_; }
+
   Problem &problem_;
   const std::size_t count_;
 };
 
-// sweep(momentum, share) sweeps once; the workspace holds the start impulses.
-template <class Sweep>
-SolverReport accelerate(Problem &problem, const SolverOptions &options, Sweep sweep)
+constexpr int restored_every = 200;  // sweeps: a pass over the contacts costs nothing then
+
+// sweep(momentum, share) sweeps once; add(k) is as above. The workspace starts with the impulses of the last sweep.
+// What looks solved is looked at again with bodies that carry their impulses.
+template <class Sweep, class Add>
+SolverReport accelerate(Problem &problem, const SolverOptions &options, Sweep sweep, Add add)
 {
   Pace pace(problem.sliding.model != Model::frictionless);
   pace.momentum.previous = problem.workspace.numbers.data();
   BodyMomentum bodies(problem);
+  int sweeps = 0;
   const auto once = [&] {
+    if (++sweeps % restored_every == 0) bodies.restore(add);
     bodies.extrapolate(pace.momentum.share());
     return pace.look(sweep(pace.momentum, pace.share()));
   };
-  return iterate({problem.contacts.size(), problem.free_norm}, options, once, [&] { return measure(problem); });
+  const auto look = [&] {
+    const Criterion seen = measure(problem);
+    if (!solved(seen, options)) return seen;
+    bodies.restore(add);
+    return measure(problem);
+  };
+  SolverReport report = iterate({problem.contacts.size(), problem.free_norm}, options, once, look);
+  if (report.converged) return report;
+  bodies.restore(add);
+  report.criterion = measure(problem);
+  return report;
 }
 
 template <class M>
 SolverReport apgs_with_friction(Problem &problem, const SolverOptions &options)
 {
   using Tangent = typename M::Tangent;
-  problem.workspace.numbers.resize(problem.contacts.size() * carried_doubles<Tangent>);
-  double *place = problem.workspace.numbers.data();
-  for (std::size_t k = 0; k < problem.contacts.size(); ++k, place += carried_doubles<Tangent>)
-    store_carried<Tangent>(place, {problem.contacts[k].impulse, problem.sliding.slides<M>()[k].impulse});
-  return accelerate(problem, options, [&](const Momentum &momentum, double share) {
+  const std::size_t n = problem.contacts.size(), width = carried_doubles<Tangent>;
+  std::vector<double> &numbers = problem.workspace.numbers;  // impulses of the last sweep, and of the start
+  numbers.resize(2 * n * width);
+  auto *const slides = problem.sliding.slides<M>();
+  for (std::size_t k = 0; k < 2 * n; ++k)
+    store_carried<Tangent>(&numbers[k * width], {problem.contacts[k % n].impulse, slides[k % n].impulse});
+  const auto sweep = [&](const Momentum &momentum, double share) {
     return frictional_sweep<Pdas, M, true>(problem, nullptr, 1, share, momentum);
+  };
+  return accelerate(problem, options, sweep, [&](std::size_t k) {
+    const Contact &c = problem.contacts[k];
+    const Split<Tangent> start = load_carried<Tangent>(&numbers[(n + k) * width]);
+    apply_impulse(c, c.impulse - start.n, problem.bodies.data());
+    apply_tangential<M>(c, slides[k].impulse - start.t, problem.sliding.spin_response, problem.bodies.data(),
+                        problem.sliding.spins);
   });
 }
 
 SolverReport apgs_without_friction(Problem &problem, const SolverOptions &options)
 {
-  problem.workspace.numbers.resize(problem.contacts.size());
-  for (std::size_t k = 0; k < problem.contacts.size(); ++k)
-    problem.workspace.numbers[k] = problem.contacts[k].impulse;
-  return accelerate(problem, options, [&](const Momentum &momentum, double) {
+  const std::size_t n = problem.contacts.size();
+  std::vector<double> &numbers = problem.workspace.numbers;  // as with friction
+  numbers.resize(2 * n);
+  for (std::size_t k = 0; k < 2 * n; ++k) numbers[k] = problem.contacts[k % n].impulse;
+  const auto sweep_once = [&](const Momentum &momentum, double) {
     return sweep<Exact, true>(problem, nullptr, 1, momentum);
+  };
+  return accelerate(problem, options, sweep_once, [&](std::size_t k) {
+    const Contact &c = problem.contacts[k];
+    apply_impulse(c, c.impulse - numbers[n + k], problem.bodies.data());
   });
 }
 

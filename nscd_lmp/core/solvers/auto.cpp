@@ -12,13 +12,22 @@
 #include "../solver.hpp"
 
 #include <algorithm>
+#include <vector>
 
 namespace nscd {
 
 namespace {
 
+std::size_t touching_bodies(const Problem &problem)
+{
+  std::vector<bool> touches(problem.bodies.size());
+  for (const Contact &c : problem.contacts)
+    for (const int b : {c.i, c.j}) touches[b] = problem.bodies[b][3] > 0;
+  return std::size_t(std::count(touches.begin(), touches.end(), true));
+}
+
 // Whether the graph of the contacts is one without loops, or nearly.
-bool is_thin(const Problem &problem) { return double(problem.contacts.size()) < 1.2 * double(problem.bodies.size()); }
+bool is_thin(const Problem &problem) { return double(problem.contacts.size()) < 1.2 * double(touching_bodies(problem)); }
 bool is_thin(const GlobalProblem &problem) { return double(problem.w.column.size()) < 4 * double(problem.contacts()); }
 
 std::size_t count(const Problem &problem) { return problem.contacts.size(); }
@@ -61,7 +70,7 @@ class Relay {
 
   void hand_to(std::string_view solver, double alternative = 0)
   {
-    if (report_.converged || left_.maxiter < 1) return;
+    if (report_.converged || report_.at_round_off || left_.maxiter < 1) return;
     left_.alternative = alternative;
     left_.parameter = find_solver(solver).default_parameter;
     const std::size_t first = left_.history ? left_.history->size() : 0;
@@ -71,6 +80,7 @@ class Relay {
     report_.iterations += done.iterations;
     report_.criterion = done.criterion;
     report_.converged = done.converged;
+    report_.at_round_off = done.at_round_off;
     left_.maxiter -= done.iterations;
   }
 
