@@ -3,8 +3,8 @@
 //   y = x_k + beta (x_k - x_{k-1}),  x_{k+1} = sweep(y)
 //   theta' = (1 + sqrt(1 + 4 theta^2)) / 2,  beta = (theta - 1) / theta'
 //
-// A sweep moves bodies linearly with the impulses, so both are extrapolated alike; what round-off leaves between them is
-// taken away before a problem is called solved (solvers/apgs.cpp).
+// A sweep moves bodies linearly with the impulses, so both are extrapolated alike; what round-off leaves between them
+// is taken away before a problem is called solved (solvers/apgs.cpp).
 // Restart (theta = 1, beta = 0) when the sweep turns against the last move, with the diagonal of W as weight:
 // (y - x_{k+1}) . (x_{k+1} - x_k) > 0.
 //

@@ -27,7 +27,10 @@ std::size_t touching_bodies(const Problem &problem)
 }
 
 // Whether the graph of the contacts is one without loops, or nearly.
-bool is_thin(const Problem &problem) { return double(problem.contacts.size()) < 1.2 * double(touching_bodies(problem)); }
+bool is_thin(const Problem &problem)
+{
+  return double(problem.contacts.size()) < 1.2 * double(touching_bodies(problem));
+}
 bool is_thin(const GlobalProblem &problem) { return double(problem.w.column.size()) < 4 * double(problem.contacts()); }
 
 std::size_t count(const Problem &problem) { return problem.contacts.size(); }
