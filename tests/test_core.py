@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
+import sys
 import sysconfig
 from collections.abc import Callable
 from pathlib import Path
@@ -48,6 +49,7 @@ def build(folder: Path, target: str, sanitizers: str) -> Program:
     # Sanitizers need no more than -O1 and line numbers, and this compiles in half a minute on two cores.
     configure = [cmake, "--fresh", "-S", str(ROOT), "-B", str(folder), "-DNSCD_CORE_TESTS=ON"]
     configure += ["-DCMAKE_CXX_FLAGS=-O1 -g1", f"-DNSCD_SANITIZE={sanitizers}"]
+    configure += [f"-DPython_EXECUTABLE={sys.executable}"]  # that has Eigen's headers, whatever PATH says
     call(configure + (["-G", "Ninja"] if tool("ninja") else []), timeout=60)
     call([cmake, "--build", str(folder), "--target", target, "--parallel", "2"], timeout=280)
     return lambda *words: call([str(folder / "tests" / "core" / target), *words], timeout=120)

@@ -43,7 +43,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--n", type=int, default=PAPER_GRAINS, help=f"number of grains, the box grows along [{PAPER_GRAINS}]"
     )
-    parser.add_argument("--solver", choices=list(SOLVERS), default="pdas", help="[pdas]")
+    parser.add_argument(
+        "--solver", choices=list(SOLVERS), default="pdas", metavar="NAME", help="one that `nscd-lmp info` lists [pdas]"
+    )
 
 
 def main(arguments: argparse.Namespace) -> None:
