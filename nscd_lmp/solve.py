@@ -167,14 +167,14 @@ def _check(tol: float, maxiter: int, criterion: str, unconverged: str) -> tuple[
 def _start(problem: ContactProblem, warmstart: ArrayLike | Solution | None) -> Floats:
     """Return the impulses to start from, (n, dim): zeros too where nothing moves, for they are the solution."""
     shape = (len(problem), problem.dim)
-    if warmstart is None or not problem.q.any():
+    if warmstart is None:
         return np.zeros(shape)
     start = problem_checks.floats("warmstart", warmstart.impulse if isinstance(warmstart, Solution) else warmstart)
     if start.shape not in (shape, problem.q.shape):
         raise _core.NscdError(
             f"warmstart has the shape {start.shape} and must be {problem.q.shape}, one impulse for each contact"
         )
-    return start.reshape(shape)
+    return start.reshape(shape) if problem.q.any() else np.zeros(shape)
 
 
 def _run(problem: ContactProblem, start: Floats, options: dict[str, Any]) -> Solution:

@@ -115,3 +115,10 @@ def test_spheres_are_refused(arrays: dict[str, Any], message: str) -> None:
     ContactProblem.from_spheres(**(RUBBING if "slip" in arrays else PAIR))
     with pytest.raises(NscdError, match=message):
         ContactProblem.from_spheres(**arrays)
+
+
+def test_a_start_is_looked_at_even_where_nothing_drives_the_contacts():
+    still = ContactProblem(np.eye(3), np.zeros(3))
+    with pytest.raises(NscdError, match=r"warmstart has the shape \(2,\) and must be \(3,\)"):
+        solve(still, warmstart=[1.0, 1.0])
+    assert (solve(still, warmstart=np.ones(3)).impulse == 0).all()

@@ -31,6 +31,13 @@ class AssembledProblem {
 SolverReport solve_assembled(Problem &grains, const SolverOptions &options,
                              SolverReport (*solve)(GlobalProblem &, const SolverOptions &));
 
+// The same as a registry's entry wants it.
+template <SolverReport (*solve)(GlobalProblem &, const SolverOptions &)>
+SolverReport on_grains(Problem &grains, const SolverOptions &options)
+{
+  return solve_assembled(grains, options, solve);
+}
+
 // W alone.
 BlockMatrix delassus(const Problem &grains);
 

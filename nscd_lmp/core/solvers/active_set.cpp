@@ -257,13 +257,8 @@ SolverReport active_set(GlobalProblem &problem, const SolverOptions &options)
   return report;
 }
 
-SolverReport active_set_of_grains(Problem &grains, const SolverOptions &options)
-{
-  return solve_assembled(grains, options, active_set);
-}
-
 const RegisterSolver registered(
-    {70, "active_set", "active set", "global", "", 0, false, active_set_of_grains, active_set});
+    {70, "active_set", "active set", "global", "", 0, false, on_grains<active_set>, active_set});
 
 }    // namespace
 

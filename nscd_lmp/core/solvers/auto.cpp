@@ -43,6 +43,12 @@ double active_set_in_sweeps(const AnyProblem &problem)
   return is_thin(problem) ? assembly : std::max(assembly, double(count(problem)) / 3);
 }
 
+template <class AnyProblem>
+double interior_point_in_sweeps(const AnyProblem &problem)
+{
+  return std::max(300.0, 14 * double(count(problem)));
+}
+
 bool has_friction(const Problem &problem) { return problem.sliding.model != Model::frictionless; }
 bool has_friction(const GlobalProblem &problem) { return problem.dim() > 1; }
 
@@ -54,12 +60,6 @@ SolverReport run(std::string_view solver, Problem &problem, const SolverOptions 
 SolverReport run(std::string_view solver, GlobalProblem &problem, const SolverOptions &options)
 {
   return find_solver(solver).solve_global(problem, options);
-}
-
-template <class AnyProblem>
-double interior_point_in_sweeps(const AnyProblem &problem)
-{
-  return std::max(300.0, 14 * double(count(problem)));
 }
 
 // One solver after another on the same iterate; iterations add up.

@@ -205,13 +205,8 @@ SolverReport interior_point(GlobalProblem &problem, const SolverOptions &options
   return best.finish();
 }
 
-SolverReport interior_point_of_grains(Problem &grains, const SolverOptions &options)
-{
-  return solve_assembled(grains, options, interior_point);
-}
-
 const RegisterSolver registered(
-    {80, "interior_point", "interior point", "global", "", 0, true, interior_point_of_grains, interior_point});
+    {80, "interior_point", "interior point", "global", "", 0, true, on_grains<interior_point>, interior_point});
 
 }    // namespace
 
