@@ -17,7 +17,8 @@ string(REGEX MATCH "^([0-9]+)\\.([0-9]+)\\.([0-9]+)" unused "${lammps_release}")
 math(EXPR lammps_number "${CMAKE_MATCH_1} * 10000 + ${CMAKE_MATCH_2} * 100 + ${CMAKE_MATCH_3}")
 
 # Its name must not end in plugin.so: LAMMPS would load it as a plugin of its own.
-add_library(fix_nscd MODULE nscd_lmp/plugin/register_fix.cpp nscd_lmp/plugin/fix_nscd.cpp)
+add_library(fix_nscd MODULE nscd_lmp/plugin/register_fix.cpp nscd_lmp/plugin/fix_nscd.cpp
+            nscd_lmp/plugin/mpi_ranks.cpp)
 target_include_directories(fix_nscd SYSTEM PRIVATE ${lammps_include} ${mpi_include})
 target_link_libraries(fix_nscd PRIVATE nscd_core)
 export_only(fix_nscd nscd_register_fix)
@@ -32,3 +33,4 @@ foreach(library fix_nscd nscdplugin)
   target_compile_options(${library} PRIVATE -Wall -Wextra -Wno-psabi -fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=)
 endforeach()
 install(TARGETS fix_nscd nscdplugin LIBRARY DESTINATION nscd_lmp/plugin)
+install(FILES nscd_lmp/plugin/nscd_lmp_plugin.py DESTINATION .)

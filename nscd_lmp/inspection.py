@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from nscd_lmp._core import NscdError
+from nscd_lmp.ranks import Ranks
 
 # Styles that advance positions; `nve/noforce` and the like included.
 INTEGRATORS = re.compile(r"^(nve|nvt|nph|npt|nvk|rigid|move|brownian|bd|poems|nscd|npu|qbmsst|gjf|wall/move)")
@@ -22,9 +23,10 @@ class FixInfo:
 
 
 class Inspection:
-    """Questions to a live LAMMPS object."""
+    """Questions to a live LAMMPS object, on several ranks asked by all of them together."""
 
-    def __init__(self, lmp: Any) -> None:
+    def __init__(self, lmp: Any, ranks: Ranks | None = None) -> None:
+        self._ranks = ranks
         self._command = lmp.command
         self._setting = lmp.extract_setting
         self._atoms = lmp.extract_atom
@@ -35,8 +37,10 @@ class Inspection:
         os.close(handle)
         try:
             self._command(f"info {' '.join(topics)} out overwrite {path}")
-            with open(path, encoding="utf-8") as text:
-                return text.read()
+            with open(path, encoding="utf-8") as file:
+                text = file.read()
+            # Rank 0 alone writes.
+            return self._ranks.comm.bcast(text) if self._ranks else text
         finally:
             os.unlink(path)
 
@@ -86,7 +90,8 @@ class Inspection:
     def share_atoms(self, first: str, second: str) -> bool:
         """Return whether an atom is in both groups."""
         both = self.group_bit(first) | self.group_bit(second)
-        return any(mask & both == both for mask in self._atoms("mask")[: self._setting("nlocal")])
+        here = any(mask & both == both for mask in self._atoms("mask")[: self._setting("nlocal")])
+        return any(self._ranks.comm.allgather(here)) if self._ranks else here
 
     def refuse_integrators(self, fixes: list[FixInfo], own_id: str, group: str) -> None:
         """Raise if another fix moves atoms of the group."""

@@ -3,10 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -235,50 +231,3 @@ def test_pair_cutoff_below_the_diameter_is_refused(start, door):
     with pytest.raises(refusal(door), match=r"contacts could be missed: .* 0\.0099 less than .*raise the cutoff"):
         lmp.command("run 2")
     assert state(lmp)[0].tolist() == balls.x.tolist()
-
-
-SCENE = """
-units si
-atom_style sphere
-region box block 0 1 0 1 0 1
-create_box 1 box
-create_atoms 1 single 0.5 0.5 0.5
-set group all diameter 0.1 density 1000
-pair_style zero 0.2
-pair_coeff * *
-"""
-TWO_RANKS = f"{SCENE}fix nscd all nscd\nrun 1\n"
-ATTACH_TWO_RANKS = f"""
-import sys
-import nscd_lmp
-from lammps import lammps
-lmp = lammps(cmdargs={SILENT!r})
-lmp.commands_string('''{SCENE}''')
-try:
-    nscd_lmp.attach(lmp)
-    lmp.command("run 1")
-except nscd_lmp.NscdError as refused:
-    print(refused, file=sys.stderr, flush=True)
-"""
-
-
-# Shared memory alone, with a speed of its own: UCX refuses networks without one, as virtual machines have
-# them.
-MPI_ON_ONE_HOST = {"UCX_TLS": "self,sysv", "UCX_SYSV_BW": "10000MBs", "MPIR_CVAR_NOLOCAL": "1"}
-
-
-@BOTH
-def test_more_than_one_rank_is_refused(tmp_path, door):
-    commands = Path(sys.prefix) / "bin"
-    script = tmp_path / ("in.two" if door == "script" else "two.py")
-    script.write_text(TWO_RANKS if door == "script" else ATTACH_TWO_RANKS)
-    program = [str(commands / "lmp"), "-log", "none", "-in"] if door == "script" else [sys.executable]
-    command = [str(commands / "mpiexec"), "-n", "2", *program, str(script)]
-    done = subprocess.run(
-        command, cwd=tmp_path, env=os.environ | MPI_ON_ONE_HOST, stdin=subprocess.DEVNULL,
-        capture_output=True, text=True, timeout=30, check=False,
-    )  # fmt: skip
-    said = done.stdout + done.stderr
-    if "Fatal error in internal_Init" in said:
-        pytest.skip("MPI cannot start two ranks on this machine")
-    assert "one MPI rank, this run has 2: start LAMMPS on one rank" in said

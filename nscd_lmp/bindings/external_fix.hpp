@@ -4,6 +4,7 @@
 #include "../core/report.hpp"
 #include "../core/step.hpp"
 #include "library.hpp"
+#include "python_ranks.hpp"
 
 #include <nanobind/nanobind.h>
 
@@ -23,9 +24,12 @@ struct StatsRow {
 
 class ExternalFix {
  public:
-  // `cutoff`: pair cutoff plus skin, m, up to which centres are listed at a build.
+  // `cutoff`: pair cutoff plus skin, m, up to which centres are listed at a build. `ranks`: as PythonRanks takes it,
+  // and `find_homes` a function of images' places and tags and of owned tags (nscd_lmp/ghost_homes.py); None on one
+  // rank.
   ExternalFix(const Library &library, const std::string &id, const std::string &pair_style, double cutoff,
-              int group_bit, const Settings &settings, Step::CustomSolver custom);
+              int group_bit, const Settings &settings, Step::CustomSolver custom, nanobind::object ranks,
+              nanobind::object find_homes);
 
   // Called by LAMMPS with the step's arrays: the signature of FixExternalFnPtr.
   static void callback(void *self, std::int64_t timestep, int owned, int *tags, double **x, double **f_external);
@@ -51,6 +55,8 @@ class ExternalFix {
   void require_last() const;
   void find_list();
   Grains grains();
+  void require_all_grains(int owned);
+  void find_homes(const Grains &grains);
   PairList pairs(const Grains &grains);
   void record(std::int64_t timestep);
   std::int64_t timestep() const;
@@ -59,9 +65,11 @@ class ExternalFix {
   std::string id_, pair_style_;
   double cutoff_;
   int group_bit_;
+  std::unique_ptr<PythonRanks> ranks_;   // none on one rank
+  nanobind::object find_homes_;
   Step step_;
   int list_ = -1;
-  std::vector<int> atoms_, counts_;
+  std::vector<int> atoms_, counts_, homes_;
   std::vector<int *> first_;
   std::vector<double> masses_;
   std::vector<StatsRow> stats_;

@@ -166,13 +166,14 @@ void bind_external_fix(nb::module_ &m)
           "__init__",
           [](ExternalFix *self, const nb::dict &library, const std::string &id, const std::string &pair_style,
              double cutoff, int group_bit,
-             const std::vector<std::string> &keywords, nb::object solver) {
+             const std::vector<std::string> &keywords, nb::object solver, nb::object ranks, nb::object find_homes) {
             nscd::Settings settings;
             nscd::parse_keywords(settings, keywords);
             new (self) ExternalFix(make_library(library), id, pair_style, cutoff, group_bit, settings,
-                                   python_solver(std::move(solver)));
+                                   python_solver(std::move(solver)), std::move(ranks), std::move(find_homes));
           },
-          "library"_a, "id"_a, "pair_style"_a, "cutoff"_a, "group_bit"_a, "keywords"_a, "solver"_a.none())
+          "library"_a, "id"_a, "pair_style"_a, "cutoff"_a, "group_bit"_a, "keywords"_a, "solver"_a.none(),
+          "ranks"_a.none(), "find_homes"_a.none())
       .def_prop_ro("callback_address", [](const ExternalFix &) { return std::uintptr_t(&ExternalFix::callback); })
       .def_prop_ro("self_address", [](const ExternalFix &fix) { return std::uintptr_t(&fix); })
       .def("invoke", &ExternalFix::invoke)

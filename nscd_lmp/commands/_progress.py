@@ -6,12 +6,12 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from nscd_lmp_plugin import plugin_folder
 from rich.console import Console, RenderableType
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
 from nscd_lmp import _core
-from nscd_lmp.plugin_path import plugin_folder
 
 SECONDS_BETWEEN_LINES = 10.0
 

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from mpi4py import MPI
+from nscd_lmp_plugin import plugin_folder
 from rich.console import Console
 from rich.table import Table
 
 import nscd_lmp
 from nscd_lmp.inspection import Inspection
-from nscd_lmp.plugin_path import plugin_folder
 
 MODELS = "unknowns per contact: 1, with friction 3, in dimension 2 with friction 2"
 PACKAGES = ("GRANULAR", "OPENMP", "PLUGIN", "PYTHON", "RIGID", "VORONOI")

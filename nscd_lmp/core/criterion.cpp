@@ -2,6 +2,7 @@
 
 #include "carried_velocity.hpp"
 #include "frame.hpp"
+#include "halo.hpp"
 #include "hot.hpp"
 
 #include <algorithm>
@@ -141,7 +142,11 @@ Criterion measure(const Problem &problem, const double *local_velocity)
   const Model model = problem.sliding.model;
   if (model == Model::frictionless) sum = frictionless(problem, local_velocity);
   with_friction(model, [&]<class M>(M) { sum = frictional<M>(problem, local_velocity); });
-  return sum.mean(problem.contacts.size(), problem.restitution, problem.free_norm);
+  double sums[] = {sum.of.motion, sum.of.bipotential, sum.of.penetration, sum.natural,
+                   double(problem.contacts.size())};
+  if (problem.halo) problem.halo->sum(sums);
+  sum = {{sums[0], sums[1], sums[2], 0}, sums[3]};
+  return sum.mean(std::size_t(sums[4]), problem.restitution, problem.free_norm);
 }
 
 Criterion measure(const GlobalProblem &problem, const double *u, const double *local_velocity)

@@ -1,5 +1,6 @@
 #include "energy_limit.hpp"
 
+#include "across_ranks.hpp"
 #include "slides.hpp"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ double negligible(const State &s, std::size_t count)
 {
   double impulses = 0;
   for (std::size_t k = 0; k < count; ++k) impulses += std::abs(s.contacts[k].impulse);
-  return tolerances * s.settings.tol * impulses;
+  return tolerances * s.settings.tol * sum_everywhere(s, impulses);
 }
 
 void clear_biases(State &s, std::size_t count)
@@ -77,7 +78,7 @@ double EnergyLimit::work(const State &s, std::size_t count, const Motion *before
       sum += c.impulse * (first.n + after.n) + inner(s.friction.slides<M>()[k].impulse, first.t + after.t);
     }
   });
-  return sum / 2;
+  return sum_everywhere(s, sum) / 2;
 }
 
 // Loads the blend of first_ and second_ whose work is down to `limit`.
@@ -109,7 +110,9 @@ bool EnergyLimit::limit_unsolved(State &s, std::size_t count)
 {
   store(s, count, first_);
   const double limit = negligible(s, count);
-  for (std::size_t k = 0; k < count; ++k) remove_impulse(s, k);
+  change_across(s.halo, s.bodies, s.friction.spins.data(), [&] {
+    for (std::size_t k = 0; k < count; ++k) remove_impulse(s, k);
+  });
   store(s, count, second_);
   load(s, count, first_, second_, 0);
   if (work(s, count, &second_) <= limit) return false;

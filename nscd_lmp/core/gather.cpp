@@ -18,11 +18,6 @@ struct Search {
   double prediction, look_ahead;
 };
 
-// Squares of speeds, (m/s)^2: what the smooth forces change, and before or after them.
-struct Largest {
-  double kick2 = 0, speed2 = 0;
-};
-
 [[noreturn]] void refuse(const State &s, int i)
 {
   const Grains &g = s.grains;
@@ -56,40 +51,45 @@ NSCD_INLINE void load_body(State &s, int i, const Search &search, Largest &large
 }
 
 // Images take their grain's velocity, so ghosts need none of their own.
-void place_images(State &s)
+void place_images(State &s, const Search &search)
 {
   const Grains &g = s.grains;
   for (int j = g.owned; j < g.owned + g.ghosts; ++j) {
     const int i = s.owner[j];
-    const double *xi = g.x + 3 * std::size_t(i), *xj = g.x + 3 * std::size_t(j);
-    const Vec4 shift{xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2], 0};
-    s.spheres[j] = {s.spheres[i].centre + shift, g.radius[i], s.spheres[i].reach};
+    const double *xj = g.x + 3 * std::size_t(j);
+    const Vec4 image{xj[0], xj[1], xj[2], 0};
+    if (i < g.owned) {
+      const double *xi = g.x + 3 * std::size_t(i);
+      s.spheres[j] = {s.spheres[i].centre + (image - Vec4{xi[0], xi[1], xi[2], 0}), g.radius[i], s.spheres[i].reach};
+      continue;
+    }
+    const Vec4 before = start_velocity(s, i), free = before + smooth_kick(s, i);
+    const double speed2 = std::max(dot(before, before), dot(free, free));
+    const bool moves = s.bodies[i][3] > 0;
+    s.spheres[j] = {image + before * (moves ? s.dt * search.prediction : 0.0), g.radius[j],
+                    s.dt * search.look_ahead * std::sqrt(speed2)};
   }
-}
-
-NSCD_HOT Largest load_bodies(State &s, const Search &search)
-{
-  Largest largest;
-  for (int i = 0; i < s.grains.owned; ++i) load_body(s, i, search, largest);
-  return largest;
 }
 
 }    // namespace
 
-double gather(State &s, double prediction, double look_ahead)
+NSCD_HOT Largest gather_owned(State &s, double prediction, double look_ahead)
 {
-  const int owned = s.grains.owned;
-  s.spheres.resize(owned + s.grains.ghosts);
-  s.bodies.resize(owned + obstacle_copies);
-  s.displacement.resize(owned);
-  const Largest largest = load_bodies(s, {prediction, look_ahead});
-  std::fill(s.bodies.begin() + owned, s.bodies.end(), Body{});
-  s.smooth_kick = std::sqrt(largest.kick2);
-  const double speed = std::sqrt(largest.speed2);
-  s.watch = watched_moves * s.dt * look_ahead * speed;
-  place_images(s);
+  s.spheres.resize(s.grains.owned + s.grains.ghosts);
+  s.bodies.resize(s.moving() + obstacle_copies);
+  s.displacement.resize(s.moving());
+  Largest largest;
+  for (int i = 0; i < s.grains.owned; ++i) load_body(s, i, {prediction, look_ahead}, largest);
+  std::fill(s.bodies.begin() + s.grains.owned, s.bodies.end(), Body{});
   if (s.friction.model != Model::frictionless) gather_spins(s);
-  return speed;
+  return largest;
+}
+
+void gather_images(State &s, double prediction, double look_ahead, const Largest &largest)
+{
+  s.smooth_kick = std::sqrt(largest.kick2);
+  s.watch = watched_moves * s.dt * look_ahead * std::sqrt(largest.speed2);
+  place_images(s, {prediction, look_ahead});
 }
 
 }    // namespace nscd

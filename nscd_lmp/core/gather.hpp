@@ -5,9 +5,18 @@
 
 namespace nscd {
 
-// Fills spheres, bodies, spins and the scales of the step: `smooth_kick`, `watch`. Contacts will be sought at
-// q_k + prediction dt v_k, and look_ahead (0 or 1) times dt |v| around. Returns the largest speed before or after the
-// smooth forces, m/s. Raises Error for a grain that cannot be integrated.
-double gather(State &state, double prediction, double look_ahead);
+// Squares of speeds, (m/s)^2: what the smooth forces change, and before or after them.
+struct Largest {
+  double kick2 = 0, speed2 = 0;
+};
+
+// Bodies and spheres of the owned atoms: free velocities, predicted positions. Contacts are sought at q_k + prediction
+// dt v_k, and look_ahead dt |v| around. Raises Error for a value that is no finite number, a radius or mass that is not
+// positive.
+Largest gather_owned(State &state, double prediction, double look_ahead);
+
+// What follows once the largest speeds of all ranks are known, and what other ranks' grains do: images, obstacles, the
+// distance up to which pairs are watched.
+void gather_images(State &state, double prediction, double look_ahead, const Largest &largest);
 
 }    // namespace nscd

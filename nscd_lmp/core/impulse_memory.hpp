@@ -44,12 +44,9 @@ class ImpulseMemory {
   {
     grow(infos.size());
     forget();
-    const std::size_t last = table_.size() - 1;
     for (std::size_t k = 0; k < infos.size(); ++k) {
       if (k + prefetch_distance < infos.size()) prefetch(infos[k + prefetch_distance].key);
-      std::size_t s = slot(infos[k].key);
-      while (table_[s].key != 0) s = (s + 1) & last;
-      table_[s] = entry(k);
+      put(entry(k));
     }
     used_ = infos.size();
   }
@@ -71,6 +68,30 @@ class ImpulseMemory {
     used_ = 0;
   }
 
+  // All entries, in no order that means anything.
+  template <class Visit>
+  void for_each(Visit visit) const
+  {
+    for (const Entry &e : table_)
+      if (e.key != 0) visit(e);
+  }
+
+  // Adds one that is not there yet.
+  void add(const Entry &entry)
+  {
+    if (recall(entry.key)) return;
+    std::vector<Entry> kept;
+    if (3 * (used_ + 1) > 2 * table_.size()) {   // a larger table puts entries elsewhere
+      for_each([&](const Entry &e) { kept.push_back(e); });
+      forget();
+      grow(2 * kept.size() + 1);
+    }
+    for (const Entry &e : kept) put(e);
+    used_ = kept.empty() ? used_ : kept.size();
+    put(entry);
+    ++used_;
+  }
+
   // Looks ahead: the entry of this key will be asked for soon. Large tables do not fit the cache.
   void prefetch(std::uint64_t key) const
   {
@@ -78,6 +99,14 @@ class ImpulseMemory {
   }
 
  private:
+  void put(const Entry &entry)
+  {
+    const std::size_t last = table_.size() - 1;
+    std::size_t s = slot(entry.key);
+    while (table_[s].key != 0) s = (s + 1) & last;
+    table_[s] = entry;
+  }
+
   std::size_t slot(std::uint64_t key) const { return (key * 0x9E3779B97F4A7C15ull) >> shift_; }
 
   // Power of two, at most two thirds full, so that a look-up of an absent key ends soon.

@@ -34,26 +34,30 @@ void refuse_full_list(const PairList &pairs, int owned)
 
 void ListGuard::inspect(State &s, const PairList &pairs)
 {
-  if (!pairs.just_built && !unknown_) return;
+  new_ = pairs.just_built || unknown_;
+  if (!new_) return;
   refuse_full_list(pairs, s.grains.owned);
   find_owners(s);
   listed_x_.assign(s.grains.x, s.grains.x + 3 * std::size_t(s.grains.owned));
   unknown_ = false;
 }
 
-// On one rank the grain of every image is at home. Which it is stays the same until the list is rebuilt.
+// Which grain an image is of stays the same until the list is rebuilt. Those of other ranks are left to the halo.
 void ListGuard::find_owners(State &s)
 {
   const Grains &g = s.grains;
   s.owner.resize(std::size_t(g.owned) + g.ghosts);
   std::iota(s.owner.begin(), s.owner.begin() + g.owned, 0);
-  if (g.ghosts == 0) return;
-  by_tag_.resize(g.owned);
-  for (int i = 0; i < g.owned; ++i) by_tag_[i] = {g.tag[i], i};
-  std::sort(by_tag_.begin(), by_tag_.end());
+  if (g.ghosts == 0 && !s.halo) return;
+  s.own_tags.resize(g.owned);
+  for (int i = 0; i < g.owned; ++i) s.own_tags[i] = {g.tag[i], i};
+  std::sort(s.own_tags.begin(), s.own_tags.end());
   for (int j = g.owned; j < g.owned + g.ghosts; ++j) {
-    const auto at = std::lower_bound(by_tag_.begin(), by_tag_.end(), std::pair<std::int32_t, int>{g.tag[j], 0});
-    if (at == by_tag_.end() || at->first != g.tag[j]) fail("image of grain ", g.tag[j], " has no grain on this rank");
+    const int home = s.halo ? g.home[j - g.owned] : 0;
+    if (s.halo && home >= 0 && home != s.halo->ranks().rank()) continue;
+    const auto at = std::lower_bound(s.own_tags.begin(), s.own_tags.end(), std::pair<std::int32_t, int>{g.tag[j], 0});
+    if (at == s.own_tags.end() || at->first != g.tag[j])
+      fail("image of grain ", g.tag[j], " has no grain on ", s.halo ? "any rank" : "this rank");
     s.owner[j] = at->second;
   }
 }
@@ -69,23 +73,17 @@ double ListGuard::farthest_moved(const State &s) const
   return std::sqrt(farthest2);
 }
 
-void ListGuard::require_reach(const State &s, const PairList &pairs, double ahead, double speed) const
+void require_reach(const Reach &r, double speed)
 {
-  if (pairs.reach < 0)
-    fail("contacts could be missed: pair cutoff plus neighbor skin are ", -pairs.reach,
+  if (r.listed < 0)
+    fail("contacts could be missed: pair cutoff plus neighbor skin are ", -r.listed,
          " less than the largest diameter: raise the cutoff of the pair style to the largest diameter plus 2 dt v of ",
-         "the fastest grain (", 2 * ahead, " now)");
-  const double moved = farthest_moved(s), nearer = 2 * (moved + ahead);
-  if (nearer > pairs.reach * (1 + 1e-12))
-    fail("contacts could be missed: two grains can be ", nearer,
-         " nearer than when the neighbor list was built (moved ", moved, " each, and dt v = ", ahead, " with v = ",
-         speed, "), but it holds pairs only up to ", pairs.reach, " apart: raise the cutoff of the pair style by ",
+         "the fastest grain (", 2 * r.ahead, " now)");
+  if (!r.is_enough())
+    fail("contacts could be missed: two grains can be ", 2 * (r.moved + r.ahead),
+         " nearer than when the neighbor list was built (moved ", r.moved, " each, and dt v = ", r.ahead, " with v = ",
+         speed, "), but it holds pairs only up to ", r.listed, " apart: raise the cutoff of the pair style by ",
          "2 dt v of the fastest grain, or use a larger neighbor skin or a smaller timestep");
-}
-
-bool ListGuard::too_old(const State &s, const PairList &pairs, double ahead) const
-{
-  return 2 * (farthest_moved(s) + ahead) > pairs.reach;
 }
 
 }    // namespace nscd

@@ -15,18 +15,28 @@ class ListGuard {
   // Before each step: if the list is new, remembers where grains were and finds the owners of images (state.owner).
   // Raises Error for a list that holds pairs twice, or an image without a grain.
   void inspect(State &state, const PairList &pairs);
-  // Raises Error if grains that move by `ahead` (m) in this step could meet without being listed.
-  void require_reach(const State &state, const PairList &pairs, double ahead, double speed) const;
-  // Whether a next step in which grains move by `ahead` needs a new list; state.grains.x has the new positions.
-  bool too_old(const State &state, const PairList &pairs, double ahead) const;
+  // How far a grain of this rank has moved since the list was built, m, at most.
+  double farthest_moved(const State &state) const;
+  // Whether the list of this step is new.
+  bool is_new() const { return new_; }
 
  private:
-  double farthest_moved(const State &state) const;
   void find_owners(State &state);
 
   std::vector<double> listed_x_;   // (owned, 3) positions at which the list was built
-  std::vector<std::pair<std::int32_t, int>> by_tag_;
-  bool unknown_ = true;
+  bool unknown_ = true, new_ = false;
 };
+
+// Lengths, m, largest or least of all ranks.
+struct Reach {
+  double listed;   // surface distance up to which the list has all pairs
+  double moved;    // by a grain since the list was built
+  double ahead;    // by a grain in the step to come
+
+  bool is_enough() const { return 2 * (moved + ahead) <= listed * (1 + 1e-12); }
+};
+
+// Raises Error if grains could meet without being listed; `speed` of the fastest, m/s.
+void require_reach(const Reach &reach, double speed);
 
 }    // namespace nscd

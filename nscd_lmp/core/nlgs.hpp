@@ -13,6 +13,7 @@
 // Here: sweeps over grains, matrix free. Sweeps over the rows of a Delassus matrix: matrix_nlgs.hpp.
 #pragma once
 
+#include "across_ranks.hpp"
 #include "carried_velocity.hpp"
 #include "hot.hpp"
 #include "iterate.hpp"
@@ -133,12 +134,12 @@ SolverReport nlgs_with_friction(Problem &problem, const SolverOptions &options)
   Relaxation relaxation;
   const auto once = [&] {
     const double share = relaxation.share();
-    const double corrected = frictional_sweep<Law, M>(problem, carried, options.parameter, share).corrected / share;
-    relaxation.look(corrected);
-    return corrected;
+    const Swept swept =
+        sweep_across(problem, [&] { return frictional_sweep<Law, M>(problem, carried, options.parameter, share); });
+    relaxation.look(swept.corrected / share);
+    return swept.corrected / share;
   };
-  return iterate({problem.contacts.size(), problem.free_norm}, options, once,
-                 [&] { return measure(problem, carried); });
+  return iterate(extent(problem), options, once, [&] { return measure_across(problem, carried); });
 }
 
 template <class Law>
@@ -149,15 +150,17 @@ SolverReport nlgs_without_friction(Problem &problem, const SolverOptions &option
     problem.workspace.numbers.assign(problem.contacts.size(), 0.0);
     carried = problem.workspace.numbers.data();
   }
-  return iterate({problem.contacts.size(), problem.free_norm}, options,
-                 [&] { return sweep<Law>(problem, carried, options.parameter).corrected; },
-                 [&] { return measure(problem, carried); });
+  const auto once = [&] {
+    return sweep_across(problem, [&] { return sweep<Law>(problem, carried, options.parameter); }).corrected;
+  };
+  return iterate(extent(problem), options, once, [&] { return measure_across(problem, carried); });
 }
 
 template <class Law>
 SolverReport nlgs(Problem &problem, const SolverOptions &options)
 {
   SolverReport report;
+  SplitMasses split(problem);
   if (problem.sliding.model == Model::frictionless) return nlgs_without_friction<Law>(problem, options);
   with_friction(problem.sliding.model,
                 [&]<class M>(M) { report = nlgs_with_friction<Law, M>(problem, options); });
@@ -169,7 +172,7 @@ template <class Law>
 SolverEntry local_law(int order, std::string_view name, std::string_view title, std::string_view parameter,
                       double default_parameter)
 {
-  return {order, name, title, "local law", parameter, default_parameter, true, nlgs<Law>, matrix_nlgs<Law>};
+  return {order, name, title, "local law", parameter, default_parameter, true, true, nlgs<Law>, matrix_nlgs<Law>};
 }
 
 }    // namespace nscd

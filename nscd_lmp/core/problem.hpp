@@ -16,6 +16,8 @@ struct Workspace {
   AlignedVector<Vec4> vectors{};
 };
 
+class Halo;
+
 struct Problem {
   std::span<Body> bodies;       // 32 B aligned; in: free velocities plus what the start impulses gave; out: solution
   std::span<Contact> contacts;  // in: start impulses; out: solution
@@ -23,6 +25,7 @@ struct Problem {
   double free_norm = 0;         // ||v_free + bias||_2 over the contacts, the scale of the relative residual, m/s
   Workspace &workspace;
   Sliding sliding{};            // tangential impulses and spins, in and out as these; nothing in a frictionless scene
+  Halo *halo = nullptr;         // bodies that contacts of other ranks touch too; none on one rank
 };
 
 }    // namespace nscd

@@ -90,6 +90,12 @@ static std::string describe_restitution(const Settings &s)
   return text.str();
 }
 
+static std::string describe_ranks(const Halo *halo)
+{
+  if (!halo) return "one rank: no exchange";
+  return std::to_string(halo->ranks().count()) + " ranks: grains that several touch are exchanged every iteration";
+}
+
 std::string describe(const Step &step)
 {
   const Settings &s = step.settings();
@@ -98,7 +104,7 @@ std::string describe(const Step &step)
        << s.tol << (s.criterion == Stop::natural ? " (natural map)" : "") << ", " << s.walls.size()
        << (s.walls.size() == 1 ? " wall" : " walls")
        << "; " << describe_model(s, step.state().friction) << "; " << describe_restitution(s)
-       << "; one rank: no exchange";
+       << "; " << describe_ranks(step.halo());
   return text.str();
 }
 

@@ -74,7 +74,7 @@ double velocity_norm(const State &s, std::size_t first, std::size_t last)
     const double v = normal_velocity(s.contacts[k], s.bodies.data()) + s.contacts[k].bias;
     sum += v * v;
   }
-  return std::sqrt(sum);
+  return std::sqrt(sum_everywhere(s, sum));
 }
 
 double tangential_work(const State &s)

@@ -44,6 +44,7 @@ struct SolverEntry {
   std::string_view parameter;   // "rho", "gamma" or none, ""
   double default_parameter;     // multiple of 1/W_nn
   bool friction;                // whether it takes contacts with friction
+  bool ranks;                   // whether its iterations go across ranks; others are solve_by_ranks' inner solver
   SolverReport (*solve)(Problem &, const SolverOptions &);              // grains
   SolverReport (*solve_global)(GlobalProblem &, const SolverOptions &);  // any Delassus matrix
 };

@@ -4,6 +4,7 @@
 #include "storage.hpp"
 #include "contact.hpp"
 #include "friction.hpp"
+#include "halo.hpp"
 #include "hot.hpp"
 #include "settings.hpp"
 #include "views.hpp"
@@ -42,16 +43,26 @@ struct Friction {
   }
 };
 
+// Grains of other ranks that have images here: bodies owned..owned + count - 1.
+struct Copies {
+  int count = 0;
+  AlignedVector<Vec4> start{}, kick{};             // v_k and dt f / m, m/s
+  AlignedVector<Vec4> start_spin{}, spin_kick{};   // the same of surface velocities, with friction
+};
+
 struct State {
   const Settings &settings;
   Grains grains;
   int dimension = 3;                     // 2: all grains in a plane z = const
+  Halo *halo = nullptr;                  // none on one rank
   double dt = 0;
 
   std::vector<Sphere> spheres{};         // (owned + ghosts)
   std::vector<int> owner{};              // (owned + ghosts) index of the body that an atom is (an image of)
-  AlignedVector<Body> bodies{};          // (owned + obstacle_copies)
-  AlignedVector<Vec4> displacement{};    // (owned) from where contacts were sought to q_{k+1}
+  std::vector<std::pair<std::int32_t, int>> own_tags{};   // sorted: tag and index of owned atoms, if there are images
+  Copies copies{};
+  AlignedVector<Body> bodies{};          // (moving() + obstacle_copies)
+  AlignedVector<Vec4> displacement{};    // (moving()) from where contacts were sought to q_{k+1}
   std::vector<Contact> contacts{};
   std::vector<ContactInfo> infos{};      // beside contacts
   std::vector<double> impact_impulse{};  // beside contacts, N s, of impacts resolved ahead of them; or empty
@@ -65,13 +76,28 @@ struct State {
 
   double watch = 0;                    // surface distance within which pairs are watched, m
   double smooth_kick = 0;              // largest |dt f / m| of the step, m/s
+
+  // Bodies that are grains, of this rank or copies of others'.
+  int moving() const { return grains.owned + copies.count; }
 };
 
-// Velocity of atom i at the start of the step, m/s.
+// Over all ranks.
+inline double sum_everywhere(const State &s, double value) { return s.halo ? s.halo->sum(value) : value; }
+
+// Velocity of grain i at the start of the step, m/s.
 NSCD_INLINE Vec4 start_velocity(const State &s, int i)
 {
+  if (i >= s.grains.owned) return s.copies.start[i - s.grains.owned];
   const double *v = s.grains.v + 3 * std::size_t(i);
   return Vec4{v[0], v[1], v[2], 0};
+}
+
+// What the smooth forces change of its velocity in the step, m/s.
+NSCD_INLINE Vec4 smooth_kick(const State &s, int i)
+{
+  if (i >= s.grains.owned) return s.copies.kick[i - s.grains.owned];
+  const double *f = s.grains.f + 3 * std::size_t(i);
+  return Vec4{f[0], f[1], f[2], 0} * (s.dt * s.grains.force_to_acceleration * s.bodies[i][3]);
 }
 
 // Walls are bodies of infinite mass. Several copies, used in turn: consecutive wall contacts then do not wait

@@ -1,5 +1,6 @@
 #include "step.hpp"
 
+#include "across_ranks.hpp"
 #include "detection.hpp"
 #include "error.hpp"
 #include "gather.hpp"
@@ -20,11 +21,13 @@ static double seconds(Clock::time_point from, Clock::time_point to)
   return std::chrono::duration<double>(to - from).count();
 }
 
-Step::Step(const Settings &settings, CustomSolver custom, int dimension) :
+Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *ranks) :
     settings_(checked(settings, dimension)), solver_(&find_solver(settings_.solver)), custom_(std::move(custom)),
     law_(find_law(settings_.law).make()), state_{.settings = settings_, .grains = {}, .dimension = dimension},
+    halo_(ranks && ranks->count() > 1 ? std::make_unique<Halo>(*ranks) : nullptr),
     prediction_(law_->prediction(settings_)), look_ahead_(law_->looks_ahead() ? 1 : 0)
 {
+  state_.halo = halo_.get();
   options_.tol = settings_.tol;
   options_.stop = settings_.criterion;
   options_.maxiter = settings_.maxiter;
@@ -46,26 +49,56 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
   if (!(dt > 0 && std::isfinite(dt))) fail("the timestep is ", dt, ": it must be > 0");
   state_.dt = dt;
   state_.grains = grains;
-  if (state_.dimension == 2) require_planar(state_);
-  list_.inspect(state_, pairs);
-  const double speed = gather(state_, prediction_, look_ahead_);
-  list_.require_reach(state_, pairs, longest_move(speed), speed);
-  detect(state_, pairs);
+  prepare(pairs);
+  together([&] { detect(state_, pairs); });
   solve();
   finish();
-  write_back(pairs);
+  write_back();
   report_.seconds_contacts = seconds(start, Clock::now()) - report_.seconds_solver;
   return report_;
 }
 
-// Biases and start impulses of the contacts from `first` on.
-NSCD_HOT void Step::start_contacts(std::size_t first)
+void Step::together(const std::function<void()> &local)
+{
+  if (halo_) halo_->together(local);
+  else local();
+}
+
+// From arrays to bodies and spheres, here and of other ranks.
+void Step::prepare(const PairList &pairs)
+{
+  Largest largest;
+  double reduced[4];
+  auto &[kick2, speed2, moved, unlisted] = reduced;
+  together([&] {
+    if (state_.dimension == 2) require_planar(state_);
+    list_.inspect(state_, pairs);
+  });
+  if (halo_ && list_.is_new()) {
+    halo_->plan(state_);
+    if (settings_.warmstart) memory_.follow_grains(*halo_, state_.friction.model);
+  }
+  together([&] { largest = gather_owned(state_, prediction_, look_ahead_); });
+  kick2 = largest.kick2, speed2 = largest.speed2, moved = list_.farthest_moved(state_), unlisted = -pairs.reach;
+  if (halo_) {
+    halo_->share_motion(state_);
+    halo_->max(reduced);
+  }
+  gather_images(state_, prediction_, look_ahead_, {kick2, speed2});
+  listed_ = -unlisted;
+  const double speed = std::sqrt(speed2);
+  require_reach({listed_, moved, longest_move(speed)}, speed);
+}
+
+// Biases and start impulses of the contacts from `first` on; `again`: those before have theirs.
+NSCD_HOT void Step::start_contacts(std::size_t first, bool again)
 {
   law_->set_bias(state_, first);
   set_tangential_bias(state_, first, law_->tangential_restitution_in_bias(settings_));
   const double added = velocity_norm(state_, first, state_.contacts.size());
-  free_norm_ = std::hypot(first == 0 ? 0 : free_norm_, added);
-  if (settings_.warmstart) memory_.recall(state_, first);
+  free_norm_ = std::hypot(again ? free_norm_ : 0, added);
+  if (!settings_.warmstart) return;
+  change_across(halo_.get(), state_.bodies, state_.friction.spins.data(), [&] { memory_.recall(state_, first); });
 }
 
 // A custom solver is shown the bodies without the impulses that it is to find.
@@ -92,21 +125,30 @@ void Step::solve_within_energy(const Part &part, EnergyLimit::From from)
   else energy_limited_ |= energy_limit_.solve(state_, part.contacts, newton, from, solve);
 }
 
+SolverReport Step::solve_problem(Problem &problem)
+{
+  if (!custom_ && (!halo_ || solver_->ranks)) return solver_->solve(problem, options_);
+  if (halo_)
+    return solve_by_ranks(problem, options_, [&] {
+      Problem own = problem;
+      own.halo = nullptr;
+      if (custom_) ask_custom(problem.contacts.size());
+      else solver_->solve(own, options_);
+    });
+  ask_custom(problem.contacts.size());
+  SolverReport solved{.iterations = 1, .criterion = measure(problem)};
+  solved.converged = nscd::solved(solved.criterion, options_);
+  return solved;
+}
+
 // Returns whether it is solved.
 bool Step::solve_part(const Part &part)
 {
   const auto start = Clock::now();
   const std::span contacts = std::span(state_.contacts).first(part.contacts);
-  Problem problem{state_.bodies, contacts, part.e, part.norm, workspace_, sliding(state_, part.e_t)};
-  SolverReport solved;
-  if (custom_) {
-    ask_custom(part.contacts);
-    solved.iterations = 1;
-    solved.criterion = measure(problem);
-    solved.converged = nscd::solved(solved.criterion, options_);
-  } else {
-    solved = solver_->solve(problem, options_);
-  }
+  Problem problem{state_.bodies, contacts, part.e, part.norm, workspace_, sliding(state_, part.e_t),
+                  halo_.get()};
+  const SolverReport solved = solve_problem(problem);
   report_.seconds_solver += seconds(start, Clock::now());
   if (!std::isfinite(solved.criterion.total()))
     fail("solver ", settings_.solver,
@@ -129,24 +171,28 @@ void Step::solve()
   state_.impact_impulse.clear();
   state_.friction.impact_impulse.clear();
   place_slides(state_, 0);
+  if (halo_) halo_->share_contacts(state_);
   std::size_t first = 0;
   const bool impacts_first = law_->resolves_impacts(settings_);
   if (impacts_first) {
     free_bodies_ = state_.bodies;
     free_spins_ = state_.friction.spins;
   }
+  bool again = false;
   do {
     if (impacts_first) {
-      resolve_impacts_first(first > 0);
+      resolve_impacts_first(again);
       first = 0;
     }
-    start_contacts(first);
+    start_contacts(first, again && !impacts_first);
     solve_within_energy({state_.contacts.size(), law_->restitution_in_bias(settings_),
                          law_->tangential_restitution_in_bias(settings_), free_norm_}, EnergyLimit::From::step);
+    if (halo_) halo_->refresh(state_);
     law_->displace(state_);
     first = state_.contacts.size();
+    again = true;
   } while (promote());
-  report_.contacts = int(state_.contacts.size());
+  report_.contacts = int(sum_everywhere(state_, double(state_.contacts.size())));
   report_.energy_limited += energy_limited_;
   judge();
 }
@@ -155,8 +201,11 @@ void Step::solve()
 bool Step::promote()
 {
   const std::size_t before = state_.contacts.size();
-  if (promote_near(state_) == 0) return false;
+  std::size_t more = 0;
+  together([&] { more = promote_near(state_); });
+  if (sum_everywhere(state_, double(more)) == 0) return false;
   place_slides(state_, before);
+  if (halo_) halo_->share_contacts(state_);
   return true;
 }
 
@@ -184,67 +233,6 @@ void Step::judge()
          judged(report_.criterion, options_), " after ", report_.iterations,
          " iterations, tol is ", settings_.tol, ": raise maxiter or tol, or use `unconverged warn`");
   ++report_.unconverged;
-}
-
-// Warm start remembers what lasts, the contacts' impulses; what the step reports has the impacts' too.
-void Step::finish()
-{
-  if (settings_.warmstart) memory_.remember(state_);
-  for (std::size_t k = 0; k < state_.impact_impulse.size(); ++k) state_.contacts[k].impulse += state_.impact_impulse[k];
-  add_slide_impulses(state_, state_.friction.impact_impulse);
-  tally_contacts();
-}
-
-// Overlap at q_{k+1}, and the energy the contacts took: -sum p (u^k + u^{k+1}) / 2, exact for any step.
-NSCD_HOT void Step::tally_contacts()
-{
-  const State &s = state_;
-  double overlap = 0, ratio = 0, work = tangential_work(s);
-  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
-    const Contact &c = s.contacts[k];
-    ContactInfo &info = state_.infos[k];
-    work += c.impulse * (info.speed_before + normal_velocity(c, s.bodies.data()));
-    const Sphere &a = s.spheres[info.atom_i];
-    Vec4 separation = a.centre + s.displacement[c.i];
-    double smaller = a.radius;
-    if (info.atom_j >= 0) {
-      const Sphere &b = s.spheres[info.atom_j];
-      separation -= b.centre + s.displacement[c.j];
-      info.gap = std::sqrt(dot(separation, separation)) - a.radius - b.radius;
-      smaller = std::min(smaller, b.radius);
-    } else {
-      info.gap += dot(c.normal, s.displacement[c.i]);
-    }
-    overlap = std::max(overlap, -info.gap);
-    ratio = std::max(ratio, -info.gap / smaller);
-  }
-  report_.largest_overlap = overlap;
-  report_.largest_overlap_ratio = ratio;
-  report_.dissipated_in_step = -0.5 * work;
-  report_.dissipated += report_.dissipated_in_step;
-}
-
-void Step::write_back(const PairList &pairs)
-{
-  const Grains &g = state_.grains;
-  double fastest2 = 0;
-  for (int i = 0; i < g.owned; ++i) {
-    const Body &b = state_.bodies[i];
-    if (b[3] == 0) continue;
-    double *x = g.x + 3 * std::size_t(i), *v = g.v + 3 * std::size_t(i), *f = g.f + 3 * std::size_t(i);
-    const Vec4 moved = state_.spheres[i].centre + state_.displacement[i];
-    const double per_force = state_.dt * g.force_to_acceleration * b[3];
-    for (int d = 0; d < 3; ++d) {
-      const double free = v[d] + f[d] * per_force;
-      f[d] = (b[d] - free) / per_force;
-      x[d] = moved[d];
-      v[d] = b[d];
-    }
-    fastest2 = std::max(fastest2, b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
-  }
-  if (state_.friction.model != Model::frictionless) write_back_spins(state_);
-  const double next = longest_move(std::sqrt(fastest2) + state_.smooth_kick);
-  wants_rebuild_ = list_.too_old(state_, pairs, next);
 }
 
 }    // namespace nscd

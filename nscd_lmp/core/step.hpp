@@ -2,6 +2,7 @@
 #pragma once
 
 #include "energy_limit.hpp"
+#include "halo.hpp"
 #include "law.hpp"
 #include "list_guard.hpp"
 #include "solver.hpp"
@@ -38,7 +39,8 @@ class Step {
 
   // `dimension`: 3, or 2 for grains in a plane z = const; with the settings it decides how many unknowns a contact has.
   // Raises Error for bad settings, or for settings that do not fit the dimension.
-  explicit Step(const Settings &settings, CustomSolver custom = {}, int dimension = 3);
+  // `ranks`: those that share the scene; null for one. They must outlive the step.
+  explicit Step(const Settings &settings, CustomSolver custom = {}, int dimension = 3, Ranks *ranks = nullptr);
   Step(const Step &) = delete;
   Step &operator=(const Step &) = delete;
 
@@ -53,6 +55,7 @@ class Step {
   const Settings &settings() const { return settings_; }
   bool has_custom_solver() const { return bool(custom_); }
   const State &state() const { return state_; }
+  const Halo *halo() const { return halo_.get(); }
 
   // True if the next step needs a fresh neighbor list to be sure of every contact.
   bool wants_rebuild() const { return wants_rebuild_; }
@@ -60,7 +63,10 @@ class Step {
  private:
   // How far around q_k contacts are sought, m, for a grain of this speed.
   double longest_move(double speed) const { return state_.dt * speed * (look_ahead_ + prediction_); }
-  void start_contacts(std::size_t first);
+  // Runs `local`, on several ranks so that all fail if one does.
+  void together(const std::function<void()> &local);
+  void prepare(const PairList &pairs);
+  void start_contacts(std::size_t first, bool again);
   void solve();
   bool promote();
   void resolve_impacts_first(bool again);
@@ -72,17 +78,19 @@ class Step {
     double norm;           // of free velocities and biases
   };
   bool solve_part(const Part &part);
+  SolverReport solve_problem(Problem &problem);
   void solve_within_energy(const Part &part, EnergyLimit::From from);
   void ask_custom(std::size_t count);
   void finish();
   void tally_contacts();
-  void write_back(const PairList &pairs);
+  void write_back();
 
   const Settings settings_;
   const SolverEntry *solver_;
   CustomSolver custom_;
   const std::unique_ptr<Law> law_;
   State state_;
+  const std::unique_ptr<Halo> halo_;   // none on one rank
   ListGuard list_;
   WarmStart memory_;
   EnergyLimit energy_limit_;
@@ -95,6 +103,7 @@ class Step {
   AlignedVector<Vec4> free_spins_;
   bool energy_limited_ = false;    // in this step
   double free_norm_ = 0;           // of the step's contacts, m/s
+  double listed_ = 0;              // as Reach has it
   bool wants_rebuild_ = false;
 };
 

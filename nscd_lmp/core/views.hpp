@@ -5,7 +5,8 @@
 
 namespace nscd {
 
-// All atoms of one rank: indices 0..owned-1 are integrated here, owned..owned+ghosts-1 are periodic images.
+// All atoms of one rank: indices 0..owned-1 are integrated here, owned..owned+ghosts-1 are images, periodic ones or of
+// atoms that other ranks own.
 // Units are any consistent set (LAMMPS `units si`: m, kg, s, N).
 struct Grains {
   int owned = 0;
@@ -18,6 +19,7 @@ struct Grains {
   const double *radius = nullptr;  // (owned + ghosts)
   const double *mass = nullptr;    // (owned)
   const std::int32_t *tag = nullptr;   // (owned + ghosts), unique per grain; an image has its grain's
+  const int *home = nullptr;       // (ghosts) rank that owns the grain; null on one rank
   const int *mask = nullptr;       // (owned)
   int group = 1;                   // an atom moves if mask & group; the others are obstacles of infinite mass
   double force_to_acceleration = 1;  // LAMMPS' ftm2v

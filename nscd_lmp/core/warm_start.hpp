@@ -12,6 +12,8 @@ class WarmStart {
   void remember(const State &state);
   // Gives the contacts from `first` on their start impulses, and the bodies what those do.
   void recall(State &state, std::size_t first) const;
+  // After a new plan: every impulse to the ranks that have the contact's grains now. Collective.
+  void follow_grains(Halo &halo, Model model);
 
  private:
   void recall_normal(State &state, std::size_t first) const;

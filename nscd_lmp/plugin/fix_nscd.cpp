@@ -36,7 +36,7 @@ auto or_stop(Error *error, const char *id, Body body)
 
 }    // namespace
 
-FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
+FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks_(world)
 {
   time_integrate = 1;
   dynamic_group_allow = 1;
@@ -49,11 +49,12 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg)
   size_local_rows = 0;
   global_freq = local_freq = 1;
   extscalar = extvector = extarray = 0;
+  comm_forward = 1;
 
   nscd::Settings settings;
   or_stop(error, id, [&] {
     nscd::parse_keywords(settings, {arg + 3, arg + narg});
-    step_ = std::make_unique<nscd::Step>(settings, nscd::Step::CustomSolver{}, domain->dimension);
+    step_ = std::make_unique<nscd::Step>(settings, nscd::Step::CustomSolver{}, domain->dimension, &ranks_);
   });
   size_local_cols = nscd::contact_columns(settings);
 }
@@ -72,9 +73,6 @@ void FixNscd::check_atoms()
                "leave friction out",
                id);
   if (!atom->tag_enable) error->all(FLERR, "Fix nscd {}: atoms have no IDs: use atom_modify id yes", id);
-  if (comm->nprocs > 1)
-    error->all(FLERR, "Fix nscd {} runs on one MPI rank, this run has {}: start LAMMPS on one rank", id,
-               comm->nprocs);
   if (utils::strmatch(update->integrate_style, "^respa"))
     error->all(FLERR, "Fix nscd {} needs run_style verlet", id);
 }
@@ -88,12 +86,15 @@ void FixNscd::check_integrators()
                      "Fix nscd {}: fix {} is a second fix nscd, and the grains of one are infinitely heavy to the "
                      "other: where they can meet, use one fix for the union of their groups",
                      id, other->id);
+    double tag = 0;
     for (int i = 0; i < atom->nlocal; ++i)
-      if ((atom->mask[i] & groupbit) && (atom->mask[i] & other->groupbit))
-        error->all(FLERR,
-                   "Fix nscd {}: atom {} is moved by fix {} (style {}) too: remove that fix or give the two "
-                   "disjoint groups",
-                   id, atom->tag[i], other->id, other->style);
+      if ((atom->mask[i] & groupbit) && (atom->mask[i] & other->groupbit)) tag = std::max<double>(tag, atom->tag[i]);
+    ranks_.max({&tag, 1});
+    if (tag > 0)
+      error->all(FLERR,
+                 "Fix nscd {}: atom {} is moved by fix {} (style {}) too: remove that fix or give the two "
+                 "disjoint groups",
+                 id, tagint(tag), other->id, other->style);
   }
 }
 
@@ -142,12 +143,41 @@ void FixNscd::measure_list_reach()
         list_reach_ = std::min(list_reach_, std::sqrt(neighbor->cutneighsq[a][b]) - largest[a] - largest[b]);
 }
 
+// The rank of every atom, from its owner by LAMMPS' communication of ghosts.
+void FixNscd::find_homes()
+{
+  if (comm->nprocs == 1) return;
+  homes_.assign(atom->nlocal + atom->nghost, comm->me);
+  comm->forward_comm(this);
+}
+
+int FixNscd::pack_forward_comm(int count, int *list, double *to, int /*pbc_flag*/, int * /*pbc*/)
+{
+  for (int k = 0; k < count; ++k) to[k] = homes_[list[k]];
+  return count;
+}
+
+void FixNscd::unpack_forward_comm(int count, int first, double *from)
+{
+  for (int k = 0; k < count; ++k) homes_[first + k] = int(from[k]);
+}
+
+// LAMMPS drops grains when it builds lists, and only then.
+void FixNscd::require_all_grains()
+{
+  double here = atom->nlocal;
+  ranks_.sum({&here, 1});
+  if (here != double(atom->natoms))
+    error->all(FLERR, "Fix nscd {}: {} of {} grains left the box: close it with wall planes or boundary s or m", id,
+               bigint(atom->natoms - bigint(here)), atom->natoms);
+}
+
 nscd::Grains FixNscd::grains()
 {
   nscd::Grains g;
   g.owned = atom->nlocal;
   g.ghosts = atom->nghost;
-  g.x = atom->nlocal ? atom->x[0] : nullptr;
+  g.x = atom->nlocal + atom->nghost ? atom->x[0] : nullptr;
   g.v = atom->nlocal ? atom->v[0] : nullptr;
   g.f = atom->nlocal ? atom->f[0] : nullptr;
   if (step_->settings().frictional() && atom->nlocal) {
@@ -162,6 +192,7 @@ nscd::Grains FixNscd::grains()
     g.mass = masses_.data();
   }
   g.tag = atom->tag;
+  g.home = homes_.empty() ? nullptr : homes_.data() + atom->nlocal;
   g.mask = atom->mask;
   g.group = groupbit;
   g.force_to_acceleration = force->ftm2v;
@@ -184,9 +215,10 @@ nscd::PairList FixNscd::pairs()
 
 void FixNscd::final_integrate()
 {
-  if (atom->nlocal != atom->natoms)
-    error->all(FLERR, "Fix nscd {}: {} of {} grains left the box: close it with wall planes or boundary s or m", id,
-               atom->natoms - atom->nlocal, atom->natoms);
+  if (neighbor->ago == 0 || steps_ == 0) {
+    require_all_grains();
+    find_homes();
+  }
   or_stop(error, id, [&] { step_->advance(grains(), pairs(), update->dt); });
   totals_.add(step_->report());
   const double time = update->atime + double(update->ntimestep - update->atimestep) * update->dt;
@@ -208,7 +240,7 @@ bool FixNscd::local_rows_wanted() const { return rows_every_step_ || output->nex
 
 void FixNscd::fill_local()
 {
-  const int rows = step_->report().contacts;
+  const int rows = int(step_->state().contacts.size());
   const int columns = size_local_cols;
   local_values_.resize(std::size_t(rows) * columns);
   nscd::fill_contact_rows(step_->state(), local_values_.data());

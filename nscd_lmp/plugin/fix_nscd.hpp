@@ -3,6 +3,7 @@
 
 #include "../core/report.hpp"
 #include "../core/step.hpp"
+#include "mpi_ranks.hpp"
 
 #include <fix.h>
 
@@ -23,6 +24,8 @@ class FixNscd : public Fix {
   double compute_vector(int n) override;
   double compute_array(int row, int column) override;
   double memory_usage() override;
+  int pack_forward_comm(int count, int *list, double *to, int pbc_flag, int *pbc) override;
+  void unpack_forward_comm(int count, int first, double *from) override;
 
  private:
   void check_atoms();
@@ -31,11 +34,15 @@ class FixNscd : public Fix {
   void find_list();
   nscd::Grains grains();
   nscd::PairList pairs();
+  void find_homes();
+  void require_all_grains();
   void fill_local();
   bool local_rows_wanted() const;
 
+  nscd::MpiRanks ranks_;
   std::unique_ptr<nscd::Step> step_;
   class NeighList *list_ = nullptr;
+  std::vector<int> homes_;              // (owned + ghosts) rank that owns the atom; empty on one rank
   std::vector<double> masses_;          // per owned atom, where masses are per type
   std::vector<double> local_values_;
   std::vector<double *> local_rows_;

@@ -125,15 +125,19 @@ void Gap::displace(State &s)
   for (std::size_t i = 0; i < bodies; ++i) {
     const Body &b = s.bodies[i];
     if (b[3] > 0) {
-      const double *v = s.grains.v + 3 * i;
-      mean_[i] = 0.5 * (Vec4{v[0], v[1], v[2], b[3]} + b);
+      mean_[i] = 0.5 * (start_velocity(s, int(i)) + Vec4{0, 0, 0, b[3]} + b);
     } else {
       mean_[i] = b;
       final_[i] = 1;
     }
   }
   open_contacts(s);
-  for (int i = 0; i < s.grains.owned; ++i) {
+  while (s.halo && s.halo->spread(final_)) {
+    for (int i = 0; i < s.moving(); ++i)
+      if (final_[i]) mean_[i] = s.bodies[i];
+    open_contacts(s);
+  }
+  for (int i = 0; i < s.moving(); ++i) {
     const Vec4 &w = mean_[i];
     s.displacement[i] = Vec4{w[0], w[1], w[2], 0} * (w[3] > 0 ? s.dt : 0.0);
   }

@@ -15,11 +15,7 @@ constexpr int max_rounds = 50;
 // Adds sign times half the smooth velocity change of the step.
 void smooth_half(State &s, double sign)
 {
-  for (int i = 0; i < s.grains.owned; ++i) {
-    const double *f = s.grains.f + 3 * std::size_t(i);
-    const double scale = 0.5 * sign * s.dt * s.grains.force_to_acceleration * s.bodies[i][3];
-    s.bodies[i] += Vec4{f[0], f[1], f[2], 0} * scale;
-  }
+  for (int i = 0; i < s.moving(); ++i) s.bodies[i] += smooth_kick(s, i) * (0.5 * sign);
   if (s.friction.model != Model::frictionless) add_smooth_spins(s, 0.5 * sign);
 }
 
@@ -57,6 +53,7 @@ std::size_t select_closing(State &s)
     swap_contacts(s, k, closing);
     bias_impact(s, closing++, u);
   }
+  if (s.halo) s.halo->find_touching(s);
   return closing;
 }
 
@@ -82,7 +79,7 @@ void resolve_impacts(State &s, const SolvePart &solve)
   s.friction.impact_impulse.clear();
   smooth_half(s, -1);
   std::size_t closing = select_closing(s);
-  for (int round = 0; round < max_rounds && closing > 0; ++round) {
+  for (int round = 0; round < max_rounds && sum_everywhere(s, double(closing)) > 0; ++round) {
     solve(closing);
     keep_impulses(s, closing);
     closing = select_closing(s);

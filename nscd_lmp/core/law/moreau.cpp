@@ -33,7 +33,7 @@ class Moreau final : public Law {
   void displace(State &s) override
   {
     const double step = s.settings.theta * s.dt;
-    for (int i = 0; i < s.grains.owned; ++i) {
+    for (int i = 0; i < s.moving(); ++i) {
       const Body &b = s.bodies[i];
       s.displacement[i] = Vec4{b[0], b[1], b[2], 0} * (b[3] > 0 ? step : 0.0);
     }

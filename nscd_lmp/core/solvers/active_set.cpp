@@ -258,7 +258,7 @@ SolverReport active_set(GlobalProblem &problem, const SolverOptions &options)
 }
 
 const RegisterSolver registered(
-    {70, "active_set", "active set", "global", "", 0, false, on_grains<active_set>, active_set});
+    {70, "active_set", "active set", "global", "", 0, false, false, on_grains<active_set>, active_set});
 
 }    // namespace
 

@@ -69,7 +69,9 @@ class BodyMomentum {
     move_last(-1);
     std::copy(first, first + count_, problem_.bodies.begin());
     if (problem_.sliding.spins) std::copy(first + count_, first + 2 * count_, problem_.sliding.spins);
-    for (std::size_t k = 0; k < problem_.contacts.size(); ++k) add(k);
+    change_across(problem_.halo, problem_.bodies, problem_.sliding.spins, [&] {
+      for (std::size_t k = 0; k < problem_.contacts.size(); ++k) add(k);
+    });
     move_last(1);
   }
 
@@ -104,18 +106,18 @@ SolverReport accelerate(Problem &problem, const SolverOptions &options, Sweep sw
   const auto once = [&] {
     if (++sweeps % restored_every == 0) bodies.restore(add);
     bodies.extrapolate(pace.momentum.share());
-    return pace.look(sweep(pace.momentum, pace.share()));
+    return pace.look(sweep_across(problem, [&] { return sweep(pace.momentum, pace.share()); }));
   };
   const auto look = [&] {
-    const Criterion seen = measure(problem);
+    const Criterion seen = measure_across(problem);
     if (!solved(seen, options)) return seen;
     bodies.restore(add);
-    return measure(problem);
+    return measure_across(problem);
   };
-  SolverReport report = iterate({problem.contacts.size(), problem.free_norm}, options, once, look);
+  SolverReport report = iterate(extent(problem), options, once, look);
   if (report.converged) return report;
   bodies.restore(add);
-  report.criterion = measure(problem);
+  report.criterion = measure_across(problem);
   return report;
 }
 
@@ -158,6 +160,7 @@ SolverReport apgs_without_friction(Problem &problem, const SolverOptions &option
 
 SolverReport apgs(Problem &problem, const SolverOptions &options)
 {
+  SplitMasses split(problem);
   if (problem.sliding.model == Model::frictionless) return apgs_without_friction(problem, options);
   SolverReport report;
   with_friction(problem.sliding.model, [&]<class M>(M) { report = apgs_with_friction<M>(problem, options); });
@@ -209,7 +212,7 @@ SolverReport matrix_apgs(GlobalProblem &problem, const SolverOptions &options)
   return report;
 }
 
-const RegisterSolver registered({60, "apgs", "APGS", "global", "", 0, true, apgs, matrix_apgs});
+const RegisterSolver registered({60, "apgs", "APGS", "global", "", 0, true, true, apgs, matrix_apgs});
 
 }    // namespace
 

@@ -52,6 +52,10 @@ double interior_point_in_sweeps(const AnyProblem &problem)
 bool has_friction(const Problem &problem) { return problem.sliding.model != Model::frictionless; }
 bool has_friction(const GlobalProblem &problem) { return problem.dim() > 1; }
 
+// There only sweeps go on, which know of other ranks.
+bool on_several_ranks(const Problem &problem) { return problem.halo; }
+bool on_several_ranks(const GlobalProblem &) { return false; }
+
 SolverReport run(std::string_view solver, Problem &problem, const SolverOptions &options)
 {
   return find_solver(solver).solve(problem, options);
@@ -101,14 +105,17 @@ SolverReport choose(AnyProblem &problem, const SolverOptions &options)
 {
   Relay relay(problem, options);
   const bool friction = has_friction(problem);
-  relay.hand_to("apgs", friction ? interior_point_in_sweeps(problem) : active_set_in_sweeps(problem));
-  relay.hand_to(friction ? "interior_point" : "active_set");
+  if (!on_several_ranks(problem)) {
+    relay.hand_to("apgs", friction ? interior_point_in_sweeps(problem) : active_set_in_sweeps(problem));
+    relay.hand_to(friction ? "interior_point" : "active_set");
+  }
   relay.hand_to("apgs", relay.sweeps_left() / 2);
   relay.hand_to("pdas");
   return relay.report();
 }
 
-const RegisterSolver registered({100, "auto", "auto", "global", "", 0, true, choose<Problem>, choose<GlobalProblem>});
+const RegisterSolver registered(
+    {100, "auto", "auto", "global", "", 0, true, true, choose<Problem>, choose<GlobalProblem>});
 
 }    // namespace
 

@@ -205,8 +205,8 @@ SolverReport interior_point(GlobalProblem &problem, const SolverOptions &options
   return best.finish();
 }
 
-const RegisterSolver registered(
-    {80, "interior_point", "interior point", "global", "", 0, true, on_grains<interior_point>, interior_point});
+const RegisterSolver registered({80, "interior_point", "interior point", "global", "", 0, true, false,
+                                on_grains<interior_point>, interior_point});
 
 }    // namespace
 

@@ -1,0 +1,124 @@
+// Warm start across ranks: with every new list, impulses go where their contacts may be solved now.
+//
+// A contact is solved by a rank that owns one of its grains, and which of them that is changes with their places. So
+// its impulse is sent to the owners of both. Where a grain has gone so far that the rank which remembers the contact
+// does not know it any more (fix balance), a rank that is found from the tag alone brings the two together: it is told
+// of the impulse, and by their new owners of all grains that have arrived somewhere.
+#include "warm_start.hpp"
+
+#include "halo.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <type_traits>
+
+namespace nscd {
+
+namespace {
+
+// The grains of a key (contact_geometry.hpp); 0 where a wall is.
+struct Pair {
+  std::int32_t tags[2];
+};
+
+Pair grains_of(std::uint64_t key)
+{
+  const auto low = std::int32_t(key & 0xFFFFFFFF);
+  const bool wall = key >> 63;
+  return {{low, wall ? 0 : std::int32_t(key >> 32)}};
+}
+
+class Post {
+ public:
+  std::vector<double> &to(int rank) { return letters_[rank]; }
+
+  std::vector<Letter> letters()
+  {
+    std::vector<Letter> all;
+    for (auto &[rank, numbers] : letters_) all.push_back({rank, std::move(numbers)});
+    return all;
+  }
+
+ private:
+  std::map<int, std::vector<double>> letters_;
+};
+
+template <class Entry>
+void write(const Entry &entry, std::vector<double> &to)
+{
+  static_assert(std::is_trivially_copyable_v<Entry> && sizeof(Entry) % sizeof(double) == 0);
+  const auto words = std::bit_cast<std::array<double, sizeof(Entry) / sizeof(double)>>(entry);
+  to.insert(to.end(), words.begin(), words.end());
+}
+
+template <class Entry>
+std::vector<Entry> read(const std::vector<Letter> &letters)
+{
+  constexpr std::size_t width = sizeof(Entry) / sizeof(double);
+  std::vector<Entry> entries;
+  for (const Letter &letter : letters)
+    for (std::size_t k = 0; k + width <= letter.numbers.size(); k += width) {
+      std::array<double, width> words;
+      std::copy_n(letter.numbers.begin() + k, width, words.begin());
+      entries.push_back(std::bit_cast<Entry>(words));
+    }
+  return entries;
+}
+
+// Impulses of grains that have gone out of sight, through the ranks that their tags name.
+template <class Entry>
+void find_again(Halo &halo, ImpulseMemory<Entry> &memory, const std::vector<std::pair<std::int32_t, Entry>> &lost)
+{
+  const auto meeting_place = [&](std::int32_t tag) { return tag % halo.ranks().count(); };
+  Post impulses, arrivals, found;
+  for (const auto &[tag, entry] : lost) {
+    std::vector<double> &to = impulses.to(meeting_place(tag));
+    to.push_back(tag);
+    write(entry, to);
+  }
+  for (const std::int32_t tag : halo.arrivals()) arrivals.to(meeting_place(tag)).push_back(tag);
+  std::map<std::int32_t, int> homes;
+  for (const Letter &letter : halo.deliver(arrivals.letters()))
+    for (const double tag : letter.numbers) homes[std::int32_t(tag)] = letter.rank;
+  constexpr std::size_t width = 1 + sizeof(Entry) / sizeof(double);
+  for (const Letter &letter : halo.deliver(impulses.letters()))
+    for (auto at = letter.numbers.begin(); at != letter.numbers.end(); at += width) {
+      const auto home = homes.find(std::int32_t(*at));
+      if (home == homes.end()) continue;
+      std::vector<double> &to = found.to(home->second);
+      to.insert(to.end(), at + 1, at + width);
+    }
+  for (const Entry &entry : read<Entry>(halo.deliver(found.letters()))) memory.add(entry);
+}
+
+template <class Entry>
+void follow(Halo &halo, ImpulseMemory<Entry> &memory)
+{
+  Post post;
+  std::vector<std::pair<std::int32_t, Entry>> lost;
+  memory.for_each([&](const Entry &entry) {
+    const Pair pair = grains_of(entry.key);
+    for (const std::int32_t tag : pair.tags) {
+      if (tag == 0) continue;
+      const int home = halo.home_of(tag);
+      if (home < 0) lost.push_back({tag, entry});
+      else if (home != halo.ranks().rank()) write(entry, post.to(home));
+    }
+  });
+  for (const Entry &entry : read<Entry>(halo.deliver(post.letters()))) memory.add(entry);
+  if (halo.sum(double(lost.size())) > 0) find_again(halo, memory, lost);
+}
+
+}    // namespace
+
+void WarmStart::follow_grains(Halo &halo, Model model)
+{
+  switch (model) {
+    case Model::frictionless: follow(halo, normal_); break;
+    case Model::planar: follow(halo, planar_); break;
+    case Model::spatial: follow(halo, spatial_); break;
+  }
+}
+
+}    // namespace nscd

@@ -1,0 +1,77 @@
+// The end of a step: what it has done, and back into the arrays.
+#include "hot.hpp"
+#include "slides.hpp"
+#include "spins.hpp"
+#include "step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nscd {
+
+// Warm start remembers what lasts, the contacts' impulses; what the step reports has the impacts' too.
+void Step::finish()
+{
+  if (settings_.warmstart) memory_.remember(state_);
+  for (std::size_t k = 0; k < state_.impact_impulse.size(); ++k) state_.contacts[k].impulse += state_.impact_impulse[k];
+  add_slide_impulses(state_, state_.friction.impact_impulse);
+  tally_contacts();
+}
+
+// Overlap at q_{k+1}, and the energy the contacts took: -sum p (u^k + u^{k+1}) / 2, exact for any step.
+NSCD_HOT void Step::tally_contacts()
+{
+  const State &s = state_;
+  double overlap = 0, ratio = 0, work = tangential_work(s);
+  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
+    const Contact &c = s.contacts[k];
+    ContactInfo &info = state_.infos[k];
+    work += c.impulse * (info.speed_before + normal_velocity(c, s.bodies.data()));
+    const Sphere &a = s.spheres[info.atom_i];
+    Vec4 separation = a.centre + s.displacement[c.i];
+    double smaller = a.radius;
+    if (info.atom_j >= 0) {
+      const Sphere &b = s.spheres[info.atom_j];
+      separation -= b.centre + s.displacement[c.j];
+      info.gap = std::sqrt(dot(separation, separation)) - a.radius - b.radius;
+      smaller = std::min(smaller, b.radius);
+    } else {
+      info.gap += dot(c.normal, s.displacement[c.i]);
+    }
+    overlap = std::max(overlap, -info.gap);
+    ratio = std::max(ratio, -info.gap / smaller);
+  }
+  double largest[] = {overlap, ratio};
+  if (halo_) halo_->max(largest);
+  report_.largest_overlap = largest[0];
+  report_.largest_overlap_ratio = largest[1];
+  report_.dissipated_in_step = -0.5 * sum_everywhere(s, work);
+  report_.dissipated += report_.dissipated_in_step;
+}
+
+void Step::write_back()
+{
+  const Grains &g = state_.grains;
+  double fastest2 = 0;
+  for (int i = 0; i < g.owned; ++i) {
+    const Body &b = state_.bodies[i];
+    if (b[3] == 0) continue;
+    double *x = g.x + 3 * std::size_t(i), *v = g.v + 3 * std::size_t(i), *f = g.f + 3 * std::size_t(i);
+    const Vec4 moved = state_.spheres[i].centre + state_.displacement[i];
+    const double per_force = state_.dt * g.force_to_acceleration * b[3];
+    for (int d = 0; d < 3; ++d) {
+      const double free = v[d] + f[d] * per_force;
+      f[d] = (b[d] - free) / per_force;
+      x[d] = moved[d];
+      v[d] = b[d];
+    }
+    fastest2 = std::max(fastest2, b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
+  }
+  if (state_.friction.model != Model::frictionless) write_back_spins(state_);
+  double reduced[] = {fastest2, list_.farthest_moved(state_)};
+  if (halo_) halo_->max(reduced);
+  const double next = longest_move(std::sqrt(reduced[0]) + state_.smooth_kick);
+  wants_rebuild_ = !Reach{listed_, reduced[1], next}.is_enough();
+}
+
+}    // namespace nscd

@@ -1,0 +1,144 @@
+"""Runs for test_ranks.py on several ranks: ``mpiexec -n P python ranks_scene.py CASE[,CASE...] BEDS ANSWERS``.
+
+Every case starts from grains that lie in a file, takes some steps and leaves what all ranks have together, by tag.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from lammps import lammps
+
+import nscd_lmp
+
+DT, LARGEST = 2e-4, 0.5e-3
+Answer = dict[str, Any]
+
+
+def start(beds: Path, name: str, *, newton: str = "on", processors: str = "* * 1") -> lammps:
+    """Return a LAMMPS instance with the grains of a file, radii and all; those of type 2 do not move by forces."""
+    grains = np.load(beds / f"{name}.npz")
+    lmp = lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite"])
+    lx, ly, lz = grains["box"]
+    lmp.commands_list(["units si", f"newton {newton}", "atom_style sphere", f"boundary {grains['boundary']}"])
+    lmp.command(f"processors {processors}")
+    lmp.commands_list([f"region box block 0 {lx} 0 {ly} 0 {lz}", "create_box 2 box", "comm_modify vel yes"])
+    types, tags = grains["type"].astype(np.int32), np.arange(1, len(grains["x"]) + 1, dtype=np.int32)
+    lmp.create_atoms(
+        len(tags), tags.tolist(), types.tolist(), grains["x"].ravel().tolist(), grains["v"].ravel().tolist()
+    )
+    for tag, radius in zip(tags, grains["radius"].tolist(), strict=True):
+        lmp.command(f"set atom {tag} diameter {2 * radius!r} density 2500")
+    lmp.commands_list([f"pair_style zero {2.5 * LARGEST}", "pair_coeff * *", f"neighbor {0.5 * LARGEST} bin"])
+    lmp.commands_list(["neigh_modify every 1 delay 0 check yes", f"timestep {DT}"])
+    lmp.commands_list(["group grains type 1", "fix gravity grains gravity 9.81 vector 0 0 -1"])
+    return lmp
+
+
+def harden(lmp: lammps, door: str, **settings: Any) -> nscd_lmp.Attached | None:
+    """Attach by a door, above a floor."""
+    if door == "python":
+        return nscd_lmp.attach(lmp, "grains", walls=[nscd_lmp.Plane((0, 0, 0), (0, 0, 1))], **settings)
+    words = " ".join(f"{key} {value}" for key, value in settings.items())
+    lmp.command(f"fix nscd grains nscd {words} wall plane 0 0 0 0 0 1")
+    return None
+
+
+def answer(lmp: lammps, **more: Any) -> Answer:
+    """Return places, velocities and spins by tag, of all ranks."""
+    found = {
+        name: np.array(lmp.numpy.extract_atom(name)[: lmp.extract_setting("nlocal")]) for name in ("x", "v", "omega")
+    }
+    tags = np.array(lmp.numpy.extract_atom("id")[: lmp.extract_setting("nlocal")])
+    comm = lmp.get_mpi_comm()
+    pieces = comm.gather((tags, found))
+    lmp.close()
+    if comm.rank != 0:
+        return {}
+    order = np.argsort(np.concatenate([tags for tags, _ in pieces]))
+    return {n: np.concatenate([of[n] for _, of in pieces])[order] for n in found} | more
+
+
+def run(beds: Path, name: str, door: str, steps: int = 1, **settings: Any) -> Answer:
+    """Take some steps."""
+    placed = {key: settings.pop(key) for key in ("newton", "processors") if key in settings}
+    lmp = start(beds, name, **placed)
+    harden(lmp, door, **({"tol": 1e-10, "maxiter": 100000, "solver": "apgs"} | settings))
+    lmp.command(f"run {steps}")
+    return answer(lmp)
+
+
+def balanced(beds: Path, door: str, warmstart: bool) -> Answer:
+    """Count iterations on a column at rest, cut between ranks near its foot and near its top in turn."""
+    lmp = start(beds, "column", processors="1 1 *")
+    word = warmstart if door == "python" else {True: "yes", False: "no"}[warmstart]
+    attached = harden(lmp, door, solver="pdas", tol=1e-9, maxiter=100000, warmstart=word)
+    lmp.commands_list(["comm_style tiled", "variable foot atom 1+50*(z<2e-3)", "variable top atom 1+50*(z>7e-3)"])
+    owned, iterations = [], []
+    for turn in range(4):
+        lmp.command(f"balance 0.9 rcb weight var {'foot' if turn % 2 else 'top'}")
+        lmp.command("run 1")
+        owned.append(lmp.extract_setting("nlocal"))
+        found = attached.stats["iterations"][-1] if attached else lmp.extract_fix("nscd", 0, 0)
+        iterations.append(int(found))
+    return answer(lmp, iterations=iterations, owned=owned)
+
+
+def bad(beds: Path, door: str, what: str) -> Answer:
+    """Let one rank fail; return what every rank's caller is told."""
+    lmp = start(beds, "bed")
+    comm = lmp.get_mpi_comm()
+    last = comm.rank == comm.size - 1
+
+    def solver(system: nscd_lmp.ContactSystem) -> np.ndarray:
+        if last:
+            raise ZeroDivisionError("a flaw of the solver")
+        return np.zeros_like(system.start)
+
+    harden(lmp, door, **({"solver": solver} if what == "solver" else {}))
+    lmp.command("run 1" if what != "solver" else "run 0")
+    owned = lmp.extract_setting("nlocal")
+    if what == "nan" and last and owned:
+        lmp.numpy.extract_atom("v")[0] = np.nan
+    try:
+        lmp.command("run 3 pre no" if what == "nan" else "run 3")
+        told = "nothing"
+    except Exception as error:
+        told = f"{type(error).__name__}: {error}"
+    all_told = comm.gather(told)
+    return answer(lmp, told=all_told) if what == "solver" else ({"told": all_told} if comm.rank == 0 else {})
+
+
+CASES: dict[str, Callable[[Path], Answer]] = {}
+for _door in ("script", "python"):
+    for _newton in ("on", "off"):
+        CASES[f"bed_{_door}_{_newton}"] = lambda beds, d=_door, n=_newton: run(beds, "bed", d, newton=n)
+    CASES[f"friction_{_door}"] = lambda beds, d=_door: run(beds, "bed", d, friction=0.1, tol=1e-8)
+    CASES[f"column_{_door}"] = lambda beds, d=_door: run(beds, "column", d, processors="1 1 *", tol=1e-12)
+    CASES[f"shear_{_door}"] = lambda beds, d=_door: run(beds, "shear", d, friction=0.1, tol=1e-8, processors="* 1 1")
+    CASES[f"moreau_{_door}"] = lambda beds, d=_door: run(beds, "bed", d, law="moreau")
+    CASES[f"impacts_{_door}"] = lambda beds, d=_door: run(beds, "thrown", d, restitution=0.5, tol=1e-12)
+    for _time in ("fall", "fall_again"):
+        CASES[f"{_time}_{_door}"] = lambda beds, d=_door: run(beds, "falling", d, steps=100, friction=0.3, tol=1e-6)
+    CASES[f"warm_{_door}"] = lambda beds, d=_door: balanced(beds, d, True)
+    CASES[f"cold_{_door}"] = lambda beds, d=_door: balanced(beds, d, False)
+    CASES[f"nan_{_door}"] = lambda beds, d=_door: bad(beds, d, "nan")
+for _solver in nscd_lmp.SOLVERS:
+    CASES[f"solver_{_solver}"] = lambda beds, s=_solver: run(
+        beds, "small", "script", solver=s, criterion="natural", tol=1e-8
+    )
+CASES["flawed_solver"] = lambda beds: bad(beds, "python", "solver")
+
+
+if __name__ == "__main__":
+    from mpi4py import MPI
+
+    names, beds, answers = sys.argv[1].split(","), Path(sys.argv[2]), Path(sys.argv[3])
+    for one in names:
+        left = CASES[one](beds)
+        if MPI.COMM_WORLD.rank == 0:
+            np.savez(answers / f"{one}.{MPI.COMM_WORLD.size}.npz", **left)
