@@ -88,6 +88,11 @@ def balanced(beds: Path, door: str, warmstart: bool) -> Answer:
     return answer(lmp, iterations=iterations, owned=owned)
 
 
+def by_solve(system: nscd_lmp.ContactSystem) -> np.ndarray:
+    """Solve the contacts of this rank alone, as a Python solver."""
+    return nscd_lmp.solve(system.problem(), "pdas", tol=1e-12, maxiter=100000).impulse.reshape(system.start.shape)
+
+
 def bad(beds: Path, door: str, what: str) -> Answer:
     """Let one rank fail; return what every rank's caller is told."""
     lmp = start(beds, "bed")
@@ -127,6 +132,7 @@ for _door in ("script", "python"):
     CASES[f"warm_{_door}"] = lambda beds, d=_door: balanced(beds, d, True)
     CASES[f"cold_{_door}"] = lambda beds, d=_door: balanced(beds, d, False)
     CASES[f"nan_{_door}"] = lambda beds, d=_door: bad(beds, d, "nan")
+CASES["python_solver"] = lambda beds: run(beds, "small", "python", solver=by_solve, criterion="natural", tol=1e-8)
 for _solver in nscd_lmp.SOLVERS:
     CASES[f"solver_{_solver}"] = lambda beds, s=_solver: run(
         beds, "small", "script", solver=s, criterion="natural", tol=1e-8

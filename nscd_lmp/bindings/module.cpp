@@ -21,7 +21,7 @@ using nscd::State;
 
 namespace {
 
-int body_index(const State &s, int body) { return body < s.grains.owned && s.bodies[body][3] > 0 ? body : -1; }
+int body_index(const State &s, int body) { return body < s.moving() && s.bodies[body][3] > 0 ? body : -1; }
 
 // What friction adds to the contact system.
 void add_friction(nb::dict &d, const State &s, std::size_t n)
@@ -57,7 +57,7 @@ nb::dict contact_system(const State &s, std::size_t n, std::span<const double> s
   nb::dict d;
   d["body_i"] = make_array<int>(n, 0, [&](auto k, auto) { return body_index(s, contacts[k].i); });
   d["body_j"] = make_array<int>(n, 0, [&](auto k, auto) { return body_index(s, contacts[k].j); });
-  d["inverse_mass"] = make_array<double>(s.grains.owned, 0, [&](auto i, auto) { return bodies[i][3]; });
+  d["inverse_mass"] = make_array<double>(s.moving(), 0, [&](auto i, auto) { return bodies[i][3]; });
   d["normal"] = make_array<double>(n, 3, [&](auto k, auto c) { return contacts[k].normal[c]; });
   d["gap"] = make_array<double>(n, 0, [&](auto k, auto) { return s.infos[k].gap; });
   d["bias"] = make_array<double>(n, 0, [&](auto k, auto) { return contacts[k].bias; });

@@ -52,7 +52,7 @@ def _add_versions(table: Table, lmp: Any) -> None:
     packages = [f"{name} {_yes(lmp.has_package(name))}" for name in PACKAGES]
     table.add_row("  packages", ", ".join(packages))
     table.add_row("MPI", " ".join(MPI.Get_library_version().splitlines()[0].split()))
-    table.add_row("  ranks", f"{MPI.COMM_WORLD.Get_size()} (fix nscd runs on 1)")
+    table.add_row("  ranks", str(MPI.COMM_WORLD.Get_size()))
     table.add_row("OpenMP threads", f"{threads} (set by OMP_NUM_THREADS)", end_section=True)
 
 

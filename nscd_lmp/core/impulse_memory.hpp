@@ -6,7 +6,11 @@
 #include "contact.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace nscd {
@@ -34,6 +38,32 @@ struct SpatialImpulse {
   double tangential[3] = {};
   double direction[3] = {};
 };
+
+// The grains of a contact's key (contact_geometry.hpp), the lower tag first; 0 for a wall.
+inline std::array<std::int32_t, 2> tags_of(std::uint64_t key)
+{
+  const bool wall = key >> 63;
+  return {wall ? 0 : std::int32_t(key >> 32), std::int32_t(key & 0xFFFFFFFF)};
+}
+
+// An entry as numbers, bit by bit, for messages and files.
+template <class Entry>
+using Words = std::array<double, sizeof(Entry) / sizeof(double)>;
+
+template <class Entry>
+Words<Entry> as_words(const Entry &entry)
+{
+  static_assert(std::is_trivially_copyable_v<Entry> && sizeof(Entry) % sizeof(double) == 0);
+  return std::bit_cast<Words<Entry>>(entry);
+}
+
+template <class Entry>
+Entry from_words(const double *from)
+{
+  Words<Entry> words;
+  std::copy_n(from, words.size(), words.begin());
+  return std::bit_cast<Entry>(words);
+}
 
 template <class Entry>
 class ImpulseMemory {

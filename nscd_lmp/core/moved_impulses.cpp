@@ -9,25 +9,12 @@
 #include "halo.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <map>
-#include <type_traits>
+#include <tuple>
 
 namespace nscd {
 
 namespace {
-
-// The grains of a key (contact_geometry.hpp); 0 where a wall is.
-struct Pair {
-  std::int32_t tags[2];
-};
-
-Pair grains_of(std::uint64_t key)
-{
-  const auto low = std::int32_t(key & 0xFFFFFFFF);
-  const bool wall = key >> 63;
-  return {{low, wall ? 0 : std::int32_t(key >> 32)}};
-}
 
 class Post {
  public:
@@ -47,22 +34,18 @@ class Post {
 template <class Entry>
 void write(const Entry &entry, std::vector<double> &to)
 {
-  static_assert(std::is_trivially_copyable_v<Entry> && sizeof(Entry) % sizeof(double) == 0);
-  const auto words = std::bit_cast<std::array<double, sizeof(Entry) / sizeof(double)>>(entry);
+  const Words<Entry> words = as_words(entry);
   to.insert(to.end(), words.begin(), words.end());
 }
 
 template <class Entry>
 std::vector<Entry> read(const std::vector<Letter> &letters)
 {
-  constexpr std::size_t width = sizeof(Entry) / sizeof(double);
+  constexpr std::size_t width = std::tuple_size_v<Words<Entry>>;
   std::vector<Entry> entries;
   for (const Letter &letter : letters)
-    for (std::size_t k = 0; k + width <= letter.numbers.size(); k += width) {
-      std::array<double, width> words;
-      std::copy_n(letter.numbers.begin() + k, width, words.begin());
-      entries.push_back(std::bit_cast<Entry>(words));
-    }
+    for (std::size_t k = 0; k + width <= letter.numbers.size(); k += width)
+      entries.push_back(from_words<Entry>(&letter.numbers[k]));
   return entries;
 }
 
@@ -81,7 +64,7 @@ void find_again(Halo &halo, ImpulseMemory<Entry> &memory, const std::vector<std:
   std::map<std::int32_t, int> homes;
   for (const Letter &letter : halo.deliver(arrivals.letters()))
     for (const double tag : letter.numbers) homes[std::int32_t(tag)] = letter.rank;
-  constexpr std::size_t width = 1 + sizeof(Entry) / sizeof(double);
+  constexpr std::size_t width = 1 + std::tuple_size_v<Words<Entry>>;
   for (const Letter &letter : halo.deliver(impulses.letters()))
     for (auto at = letter.numbers.begin(); at != letter.numbers.end(); at += width) {
       const auto home = homes.find(std::int32_t(*at));
@@ -98,8 +81,7 @@ void follow(Halo &halo, ImpulseMemory<Entry> &memory)
   Post post;
   std::vector<std::pair<std::int32_t, Entry>> lost;
   memory.for_each([&](const Entry &entry) {
-    const Pair pair = grains_of(entry.key);
-    for (const std::int32_t tag : pair.tags) {
+    for (const std::int32_t tag : tags_of(entry.key)) {
       if (tag == 0) continue;
       const int home = halo.home_of(tag);
       if (home < 0) lost.push_back({tag, entry});

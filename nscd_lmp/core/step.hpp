@@ -57,6 +57,9 @@ class Step {
   const State &state() const { return state_; }
   const Halo *halo() const { return halo_.get(); }
 
+  // The impulses that the next step starts from, to be kept between runs.
+  WarmStart &memory() { return memory_; }
+
   // True if the next step needs a fresh neighbor list to be sure of every contact.
   bool wants_rebuild() const { return wants_rebuild_; }
 

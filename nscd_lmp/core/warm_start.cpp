@@ -2,6 +2,8 @@
 
 #include "hot.hpp"
 
+#include <tuple>
+
 namespace nscd {
 
 namespace {
@@ -80,6 +82,47 @@ NSCD_HOT void WarmStart::recall_normal(State &s, std::size_t first) const
     Contact &c = s.contacts[k];
     c.impulse = known ? known->normal : 0;
     apply_impulse(c, c.impulse, s.bodies.data());
+  }
+}
+
+namespace {
+
+template <class Entry>
+void visit_all(const ImpulseMemory<Entry> &memory, const WarmStart::Visit &visit)
+{
+  memory.for_each([&](const Entry &entry) {
+    const auto tags = tags_of(entry.key);
+    const Words<Entry> words = as_words(entry);
+    visit(tags[0], tags[1], words);
+  });
+}
+
+}    // namespace
+
+std::size_t WarmStart::words(Model model)
+{
+  switch (model) {
+    case Model::planar: return std::tuple_size_v<Words<PlanarImpulse>>;
+    case Model::spatial: return std::tuple_size_v<Words<SpatialImpulse>>;
+    default: return std::tuple_size_v<Words<NormalImpulse>>;
+  }
+}
+
+void WarmStart::for_each(Model model, const Visit &visit) const
+{
+  switch (model) {
+    case Model::frictionless: visit_all(normal_, visit); break;
+    case Model::planar: visit_all(planar_, visit); break;
+    case Model::spatial: visit_all(spatial_, visit); break;
+  }
+}
+
+void WarmStart::add(Model model, std::span<const double> words)
+{
+  switch (model) {
+    case Model::frictionless: normal_.add(from_words<NormalImpulse>(words.data())); break;
+    case Model::planar: planar_.add(from_words<PlanarImpulse>(words.data())); break;
+    case Model::spatial: spatial_.add(from_words<SpatialImpulse>(words.data())); break;
   }
 }
 

@@ -50,6 +50,8 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks
   global_freq = local_freq = 1;
   extscalar = extvector = extarray = 0;
   comm_forward = 1;
+  restart_global = restart_peratom = 1;
+  atom->add_callback(Atom::RESTART);
 
   nscd::Settings settings;
   or_stop(error, id, [&] {
@@ -59,7 +61,10 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks
   size_local_cols = nscd::contact_columns(settings);
 }
 
-FixNscd::~FixNscd() = default;
+FixNscd::~FixNscd()
+{
+  if (modify->get_fix_by_id(id)) atom->delete_callback(id, Atom::RESTART);
+}
 
 int FixNscd::setmask() { return FINAL_INTEGRATE | POST_RUN; }
 
@@ -255,6 +260,34 @@ double FixNscd::compute_scalar() { return step_->report().iterations; }
 double FixNscd::compute_vector(int n) { return nscd::report_column(step_->report(), n); }
 
 double FixNscd::compute_array(int /*row*/, int column) { return totals_.column(column); }
+
+// Called on all ranks ahead of the records; rank 0 writes their number of words, which nothing reads.
+void FixNscd::write_restart(FILE *file)
+{
+  records_.collect(*step_, atom->nlocal, atom->tag);
+  double largest = records_.largest();
+  ranks_.max({&largest, 1});
+  largest_record_ = int(largest);
+  if (comm->me != 0) return;
+  const int bytes = sizeof largest;
+  fwrite(&bytes, sizeof bytes, 1, file);
+  fwrite(&largest, bytes, 1, file);
+}
+
+// Rank 0 alone is asked.
+int FixNscd::maxsize_restart() { return largest_record_; }
+
+int FixNscd::size_restart(int atom_index) { return records_.size(atom->tag[atom_index]); }
+
+int FixNscd::pack_restart(int atom_index, double *to) { return records_.pack(atom->tag[atom_index], to); }
+
+// `nth` records of other fixes lie before this one's.
+void FixNscd::unpack_restart(int atom_index, int nth)
+{
+  const double *record = atom->extra[atom_index];
+  for (int k = 0; k < nth; ++k) record += int(record[0]);
+  nscd::RestartRecords::unpack(*step_, record);
+}
 
 double FixNscd::memory_usage()
 {

@@ -4,6 +4,7 @@
 #include "../core/report.hpp"
 #include "../core/step.hpp"
 #include "mpi_ranks.hpp"
+#include "restart.hpp"
 
 #include <fix.h>
 
@@ -24,6 +25,12 @@ class FixNscd : public Fix {
   double compute_vector(int n) override;
   double compute_array(int row, int column) override;
   double memory_usage() override;
+  void write_restart(FILE *file) override;
+  void restart(char *) override {}
+  int maxsize_restart() override;
+  int size_restart(int atom_index) override;
+  int pack_restart(int atom_index, double *to) override;
+  void unpack_restart(int atom_index, int nth) override;
   int pack_forward_comm(int count, int *list, double *to, int pbc_flag, int *pbc) override;
   void unpack_forward_comm(int count, int first, double *from) override;
 
@@ -49,6 +56,8 @@ class FixNscd : public Fix {
   double list_reach_ = 0;
   bool rows_every_step_ = false;
   nscd::Totals totals_;
+  nscd::RestartRecords records_;
+  int largest_record_ = 0;              // of all ranks
   bigint steps_ = 0;                    // of the run
 };
 
