@@ -7,6 +7,7 @@ back into the box: at a build of the list every grain lies in the part of its ow
 from __future__ import annotations
 
 import ctypes
+import weakref
 from collections.abc import Callable
 from typing import Any
 
@@ -35,7 +36,11 @@ def finder(lmp: Any, ranks: Ranks) -> Find:
         returns the ranks that own the images (n), -1 for an image without a grain.
     """
 
+    # The fix holds the function and the LAMMPS object the fix: a reference back would keep both for ever.
+    instance = weakref.ref(lmp)
+
     def find(x: NDArray[np.float64], tags: NDArray[np.int32], owned: NDArray[np.int32]) -> NDArray[np.int32]:
+        lmp = instance()
         homes = np.where(np.isin(tags, owned), np.int32(ranks.rank), np.int32(-1))
         remote = np.flatnonzero(homes < 0)
         lows, highs = _parts(lmp, ranks)
@@ -56,8 +61,9 @@ def finder(lmp: Any, ranks: Ranks) -> Find:
 
 def _global(lmp: Any, name: str, of: Any, count: int) -> NDArray[Any]:
     """Return a global quantity of LAMMPS, whose getters in Python differ between releases."""
-    lmp.lib.lammps_extract_global.restype = ctypes.c_void_p
-    address = lmp.lib.lammps_extract_global(lmp.lmp, name.encode())
+    function = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p, ctypes.c_char_p)
+    extract = ctypes.cast(lmp.lib.lammps_extract_global, function)
+    address = extract(lmp.lmp, name.encode())
     return np.ctypeslib.as_array(ctypes.cast(address, ctypes.POINTER(of)), (count,))
 
 

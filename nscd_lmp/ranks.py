@@ -34,11 +34,11 @@ class Ranks:
 
     def sum(self, numbers: Numbers) -> None:
         """Replace the numbers by their sums over all ranks."""
-        self._wait([self.comm.Iallreduce(MPI.IN_PLACE, numbers, MPI.SUM)])
+        self._reduce(numbers, MPI.SUM)
 
     def max(self, numbers: Numbers) -> None:
         """Replace the numbers by the largest of all ranks."""
-        self._wait([self.comm.Iallreduce(MPI.IN_PLACE, numbers, MPI.MAX)])
+        self._reduce(numbers, MPI.MAX)
 
     def exchange(self, out: list[Letter], into: list[Letter]) -> None:
         """Send numbers to neighbours and fill those that come from them; the lengths are known on both sides."""
@@ -69,6 +69,13 @@ class Ranks:
                 return sorted(came, key=lambda letter: letter[0])
             if barrier is None and MPI.Request.Testall(sends):
                 barrier = self.comm.Ibarrier()
+
+    def _reduce(self, numbers: Numbers, operation: MPI.Op) -> None:
+        # As plugin/mpi_ranks.cpp does it, so that both doors sum in the same order.
+        if self.crowded:
+            self._wait([self.comm.Iallreduce(MPI.IN_PLACE, numbers, operation)])
+        else:
+            self.comm.Allreduce(MPI.IN_PLACE, numbers, operation)
 
     def _wait(self, requests: list[MPI.Request]) -> None:
         if self.crowded:

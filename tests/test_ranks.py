@@ -204,6 +204,25 @@ def test_restart_on_another_number_of_ranks_goes_on_within_the_tolerance(tmp_pat
     np.testing.assert_allclose(restarted, straight, rtol=0, atol=2e-6)
 
 
+def test_fix_that_was_refused_leaves_nothing_in_restart_files(tmp_path: Path) -> None:
+    refused = """import nscd_lmp
+from lammps import lammps
+lmp = lammps(cmdargs=["-screen", "none", "-log", "none"])
+lmp.commands_string("units si\\natom_style sphere\\nregion box block 0 1 0 1 0 1\\ncreate_box 1 box")
+lmp.commands_string("create_atoms 1 single 0.5 0.5 0.5\\nset group all diameter 0.1 density 1000")
+lmp.commands_string("pair_style zero 0.2\\npair_coeff * *")
+try:
+    lmp.command("fix nscd all nscd tol -1")
+except Exception:
+    print("refused")
+lmp.commands_string("fix nscd all nscd\\nrun 1\\nwrite_restart RESTART\\nclear\\nread_restart RESTART")
+lmp.commands_string("pair_style zero 0.2\\npair_coeff * *\\nfix nscd all nscd\\nrun 1")
+assert lmp.get_natoms() == 1
+"""
+    (tmp_path / "refused.py").write_text(refused.replace("RESTART", str(tmp_path / "one.restart")))
+    execute(1, str(tmp_path / "refused.py"))
+
+
 def test_lmp_and_nscd_lmp_run_take_a_script_on_two_ranks(tmp_path: Path) -> None:
     (tmp_path / "in.two").write_text(SCRIPT)
     commands = Path(sys.prefix) / "bin"

@@ -51,7 +51,6 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks
   extscalar = extvector = extarray = 0;
   comm_forward = 1;
   restart_global = restart_peratom = 1;
-  atom->add_callback(Atom::RESTART);
 
   nscd::Settings settings;
   or_stop(error, id, [&] {
@@ -59,6 +58,8 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks
     step_ = std::make_unique<nscd::Step>(settings, nscd::Step::CustomSolver{}, domain->dimension, &ranks_);
   });
   size_local_cols = nscd::contact_columns(settings);
+  // Last, since a fix that is refused above has no destructor to take it back.
+  atom->add_callback(Atom::RESTART);
 }
 
 FixNscd::~FixNscd()
@@ -141,6 +142,7 @@ void FixNscd::measure_list_reach()
   std::vector<double> largest(types + 1, 0);
   for (int i = 0; i < atom->nlocal; ++i)
     largest[atom->type[i]] = std::max(largest[atom->type[i]], atom->radius[i]);
+  ranks_.max(largest);  // the largest of a type may be on another rank
   list_reach_ = INFINITY;
   for (int a = 1; a <= types; ++a)
     for (int b = a; b <= types; ++b)
