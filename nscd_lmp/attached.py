@@ -48,6 +48,15 @@ class Attached:
         return {name: rows[:, column].copy() for column, name in enumerate(_core.CONTACT_COLUMNS[: rows.shape[1]])}
 
     @property
+    def traffic(self) -> dict[str, float]:
+        """Return what this rank has sent to others in the steps taken so far; zeros on one rank.
+
+        Keys: ``exchanges``, rounds of messages between neighbours, ``messages`` and ``bytes`` in them, and ``reductions``
+        over all ranks. LAMMPS' own communication is not among them.
+        """
+        return self._fix.traffic()
+
+    @property
     def description(self) -> str:
         """Return one line: what was chosen for the scene."""
         return self._fix.describe()

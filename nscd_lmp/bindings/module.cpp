@@ -122,6 +122,18 @@ nb::ndarray<nb::numpy, double> contact_rows(const ExternalFix &fix)
   return make_array<double>(state.contacts.size(), columns, [&](auto k, auto c) { return rows[k * columns + c]; });
 }
 
+nb::dict traffic(const ExternalFix &fix)
+{
+  const nscd::Halo *halo = fix.step().halo();
+  const nscd::Traffic t = halo ? halo->traffic() : nscd::Traffic{};
+  nb::dict counts;
+  counts["exchanges"] = t.exchanges;
+  counts["messages"] = t.messages;
+  counts["bytes"] = t.bytes;
+  counts["reductions"] = t.reductions;
+  return counts;
+}
+
 // Names and defaults of everything registered, for choice lists, tests and legends.
 nb::list solver_table()
 {
@@ -182,6 +194,7 @@ void bind_external_fix(nb::module_ &m)
       .def("unconverged_since_asked", &ExternalFix::unconverged_since_asked)
       .def("raise_failure", [](ExternalFix &fix) { if (auto e = fix.take_failure()) std::rethrow_exception(e); })
       .def("stats_bytes", &stats_bytes)
+      .def("traffic", &traffic)
       .def("contact_rows", &contact_rows)
       .def("describe", [](const ExternalFix &fix) { return nscd::describe(fix.step()); });
 }
