@@ -51,8 +51,8 @@ class Attached:
     def traffic(self) -> dict[str, float]:
         """Return what this rank has sent to others in the steps taken so far; zeros on one rank.
 
-        Keys: ``exchanges``, rounds of messages between neighbours, ``messages`` and ``bytes`` in them, and ``reductions``
-        over all ranks. LAMMPS' own communication is not among them.
+        Keys: ``exchanges``, rounds of messages between neighbours, ``messages`` and ``bytes`` in them, and
+        ``reductions`` over all ranks. LAMMPS' own communication is not among them.
         """
         return self._fix.traffic()
 

@@ -63,6 +63,7 @@ def attach(
     recovery: float = 0.2,
     inertia: Literal["sphere", "disc"] | None = None,
     unconverged: Literal["ignore", "warn", "error"] = "warn",
+    threads: int = 1,
     door: Literal["external", "invoke"] = "external",
 ) -> Attached:
     """Make the grains of a group rigid: the following runs of `lmp` integrate them by contact dynamics.
@@ -111,6 +112,8 @@ def attach(
     unconverged : str
         What to do about steps that did not reach `tol`: ``"ignore"``, ``"warn"`` at the end of a run, or
         ``"error"``.
+    threads : int
+        Threads that share the contacts of a rank, 1 to 64; see docs/ranks.md.
     door : str
         What calls the step: ``"external"`` (LAMMPS' ``fix external``, in every build) or ``"invoke"`` (its
         ``fix python/invoke``, in builds with package PYTHON). The trajectories are equal to the last bit.
@@ -132,6 +135,7 @@ def attach(
         law=law, restitution=restitution, friction=friction, e_t=e_t or None, tol=tol, criterion=criterion,
         maxiter=maxiter, warmstart=warmstart, rho=rho, gamma=gamma, theta=theta, recovery=recovery,
         unconverged=unconverged, inertia=inertia,
+        threads=threads,
     )  # fmt: skip
     custom = None
     if callable(solver):
@@ -198,6 +202,8 @@ class _Door:
         self.fix = _core.ExternalFix(
             addresses, FIX_ID, pair_style, cutoff, group_bit, keywords, solver, ranks, find_homes
         )
+        if self.fix.crowding:
+            warnings.warn(self.fix.crowding, stacklevel=3)
         self.methods = {name: getattr(lmp, name) for name in COMMAND_METHODS}
         self.add_fix()
         for name in COMMAND_METHODS:

@@ -28,6 +28,7 @@ class Ranks:
         self.count = self.comm.size
         self.parity = 0
         machine = world.Split_type(MPI.COMM_TYPE_SHARED)
+        self.on_this_machine = machine.size
         # MPI that waits keeps its core: with more ranks than cores those that wait let the others work.
         self.crowded = machine.size > len(os.sched_getaffinity(0))
         machine.Free()

@@ -67,9 +67,12 @@ def run(beds: Path, name: str, door: str, steps: int = 1, **settings: Any) -> An
     """Take some steps."""
     placed = {key: settings.pop(key) for key in ("newton", "processors") if key in settings}
     lmp = start(beds, name, **placed)
-    harden(lmp, door, **({"tol": 1e-10, "maxiter": 100000, "solver": "apgs"} | settings))
+    attached = harden(lmp, door, **({"tol": 1e-10, "maxiter": 100000, "solver": "apgs"} | settings))
     lmp.command(f"run {steps}")
-    return answer(lmp)
+    if attached is None:
+        return answer(lmp)
+    sweeps = attached.stats["iterations"].sum()
+    return answer(lmp, sweeps=sweeps, traffic=list(attached.traffic.values()))
 
 
 def balanced(beds: Path, door: str, warmstart: bool) -> Answer:

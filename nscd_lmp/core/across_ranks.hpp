@@ -1,7 +1,8 @@
-// Iterations of a solver on several ranks: masses split while it works, corrections put together, sums over all ranks.
+// Iterations of a solver on several ranks, whose threads they use (across_threads.hpp): masses split while it works, corrections put together, sums over all ranks.
 // On one rank nothing of it is left but a test of a pointer.
 #pragma once
 
+#include "across_threads.hpp"
 #include "criterion.hpp"
 #include "halo.hpp"
 #include "iterate.hpp"
@@ -45,13 +46,13 @@ void change_across(Halo *halo, std::span<Body> bodies, Vec4 *spins, Change chang
   if (halo) halo->close(bodies, spins);
 }
 
-// A sweep on every rank.
+// A sweep on every rank; sweep(range) is for some of the contacts.
 template <class Sweep>
 Swept sweep_across(Problem &problem, Sweep sweep)
 {
-  if (!problem.halo) return sweep();
+  if (!problem.halo) return sweep_in_parts(problem, sweep);
   Swept swept;
-  change_across(problem.halo, problem.bodies, problem.sliding.spins, [&] { swept = sweep(); });
+  change_across(problem.halo, problem.bodies, problem.sliding.spins, [&] { swept = sweep_in_parts(problem, sweep); });
   double sums[] = {swept.corrected, swept.against};
   problem.halo->sum(sums);
   return {sums[0], sums[1]};

@@ -58,7 +58,7 @@ NSCD_INLINE void place_contact(State &s, std::size_t k, const Candidate &c)
     const Height height(s.settings.walls[wall_index(c)]);
     normal = height.normal;
     gap = height.of(a.centre) - a.radius;
-    j = s.moving() + int(k % obstacle_copies);
+    j = s.obstacle(i, k);
   } else {
     const Sphere &b = s.spheres[c.atom_j];
     const Vec4 separation = a.centre - b.centre;

@@ -1,5 +1,6 @@
 #include "criterion.hpp"
 
+#include "across_threads.hpp"
 #include "carried_velocity.hpp"
 #include "frame.hpp"
 #include "halo.hpp"
@@ -61,6 +62,14 @@ struct Sums {
     of.motion += std::sqrt(off.n * off.n + inner(off.t, off.t));
   }
 
+  void add(const Sums &other)
+  {
+    of.motion += other.of.motion;
+    of.bipotential += other.of.bipotential;
+    of.penetration += other.of.penetration;
+    natural += other.natural;
+  }
+
   Criterion mean(std::size_t contacts, double restitution, double free_norm)
   {
     if (contacts == 0) return of;
@@ -74,11 +83,11 @@ struct Sums {
   }
 };
 
-NSCD_HOT Sums frictionless(const Problem &problem, const double *local_velocity)
+NSCD_HOT Sums frictionless(const Problem &problem, const Range &range, const double *local_velocity)
 {
   Sums sum;
   const Body *bodies = problem.bodies.data();
-  for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
+  for (std::size_t k = range.first; k < range.last; ++k) {
     const Contact &c = problem.contacts[k];
     const double v = normal_velocity(c, bodies) + c.bias;
     sum.add_frictionless(1 / c.w_inverse, c.impulse, v);
@@ -88,14 +97,14 @@ NSCD_HOT Sums frictionless(const Problem &problem, const double *local_velocity)
 }
 
 template <class M>
-NSCD_HOT Sums frictional(const Problem &problem, const double *local_velocity)
+NSCD_HOT Sums frictional(const Problem &problem, const Range &range, const double *local_velocity)
 {
   using Tangent = typename M::Tangent;
   Sums sum;
   const auto *slides = problem.sliding.template slides<M>();
   const double response = problem.sliding.spin_response;
   const double tangential_scale = (1 + problem.restitution) / (1 + problem.sliding.restitution);
-  for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
+  for (std::size_t k = range.first; k < range.last; ++k) {
     const Contact &c = problem.contacts[k];
     const auto &slide = slides[k];
     const auto bare = velocity<M>(c, problem.bodies.data(), problem.sliding.spins);
@@ -134,14 +143,33 @@ NSCD_HOT Sums global(const GlobalProblem &problem, const double *u, const double
   return sum;
 }
 
+Sums sum_of(const Problem &problem, const Range &range, const double *local_velocity)
+{
+  Sums sum;
+  const Model model = problem.sliding.model;
+  if (model == Model::frictionless) sum = frictionless(problem, range, local_velocity);
+  with_friction(model, [&]<class M>(M) { sum = frictional<M>(problem, range, local_velocity); });
+  return sum;
+}
+
+Sums sum_of(const Problem &problem, const double *local_velocity)
+{
+  const std::size_t n = problem.contacts.size();
+  if (!problem.team) return sum_of(problem, Range{0, n}, local_velocity);
+  std::array<Sums, most_threads> of_threads;
+  in_chunks(problem.team, n, [&](const Range &range, int thread) {
+    of_threads[thread] = sum_of(problem, range, local_velocity);
+  });
+  Sums sum;
+  for (int t = 0; t < problem.team->size(); ++t) sum.add(of_threads[t]);
+  return sum;
+}
+
 }    // namespace
 
 Criterion measure(const Problem &problem, const double *local_velocity)
 {
-  Sums sum;
-  const Model model = problem.sliding.model;
-  if (model == Model::frictionless) sum = frictionless(problem, local_velocity);
-  with_friction(model, [&]<class M>(M) { sum = frictional<M>(problem, local_velocity); });
+  Sums sum = sum_of(problem, local_velocity);
   double sums[] = {sum.of.motion, sum.of.bipotential, sum.of.penetration, sum.natural,
                    double(problem.contacts.size())};
   if (problem.halo) problem.halo->sum(sums);

@@ -75,14 +75,24 @@ void sort_wall(State &s, int wall)
 // without AVX2 and criterion, on a bed of 500; the sweep count changes by 1 %); more places than 8 gain nothing.
 constexpr std::size_t streams = 8;
 
-NSCD_HOT void place_contacts(State &s)
+NSCD_HOT void place_range(State &s, const Range &range)
 {
-  const std::size_t n = s.touching.size(), length = (n + streams - 1) / streams;
+  const std::size_t length = (range.size() + streams - 1) / streams;
+  std::size_t k = range.first;
+  for (std::size_t place = range.first; place < range.first + length; ++place)
+    for (std::size_t listed = place; listed < range.last; listed += length, ++k)
+      place_contact(s, k, s.touching[listed]);
+}
+
+void place_contacts(State &s)
+{
+  const std::size_t n = s.touching.size();
   resize_closely(s.contacts, n);
   resize_closely(s.infos, n);
-  std::size_t k = 0;
-  for (std::size_t place = 0; place < length; ++place)
-    for (std::size_t listed = place; listed < n; listed += length, ++k) place_contact(s, k, s.touching[listed]);
+  if (s.slabs.count() == 1) return place_range(s, {0, n});
+  s.slabs.divide(s);
+  s.slabs.order_candidates(s);
+  for (int part = 0; part < s.slabs.parts().count(); ++part) place_range(s, s.slabs.parts().range(part));
 }
 
 // Whether the candidate's grains overlap once they have moved by s.displacement.

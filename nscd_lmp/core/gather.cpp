@@ -76,7 +76,7 @@ void place_images(State &s, const Search &search)
 NSCD_HOT Largest gather_owned(State &s, double prediction, double look_ahead)
 {
   s.spheres.resize(s.grains.owned + s.grains.ghosts);
-  s.bodies.resize(s.moving() + obstacle_copies);
+  s.bodies.resize(s.moving() + obstacle_copies * s.slabs.count());
   s.displacement.resize(s.moving());
   Largest largest;
   for (int i = 0; i < s.grains.owned; ++i) load_body(s, i, {prediction, look_ahead}, largest);

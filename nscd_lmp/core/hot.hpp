@@ -5,7 +5,8 @@
 // on purpose: without it both versions give the same bits, on every machine.
 #pragma once
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
 #define NSCD_HOT __attribute__((target_clones("avx2", "default")))
 #else
 #define NSCD_HOT

@@ -101,6 +101,7 @@ const std::map<std::string, Reader> &readers()
       {"gamma", [](Settings &s, Words &w) { s.gamma = w.number<double>(); }},
       {"theta", [](Settings &s, Words &w) { s.theta = w.number<double>(); }},
       {"recovery", [](Settings &s, Words &w) { s.recovery = w.number<double>(); }},
+      {"threads", [](Settings &s, Words &w) { s.threads = w.number<int>(); }},
       {"wall", [](Settings &s, Words &w) { s.walls.push_back(read_wall(w)); }},
       {"unconverged", [](Settings &s, Words &w) { s.unconverged = parse_unconverged(w.word()); }},
   };

@@ -23,18 +23,17 @@
 
 namespace nscd {
 
-// One frictionless sweep, with momentum if there are impulses before the last one (bodies are extrapolated already).
+// One frictionless sweep over some of the contacts, with momentum if there are impulses before the last one (bodies are extrapolated already).
 template <class Law, bool accelerated = false>
-NSCD_HOT Swept sweep(Problem &problem, [[maybe_unused]] double *carried, double parameter,
+NSCD_HOT Swept sweep(Problem &problem, const Range &range, [[maybe_unused]] double *carried, double parameter,
                      const Momentum &momentum = {})
 {
   Body *const bodies = problem.bodies.data();
   Contact *const contacts = problem.contacts.data();
-  const std::size_t n = problem.contacts.size();
   [[maybe_unused]] const double share = momentum.share();
   [[maybe_unused]] double *const previous = momentum.previous;
   double corrected = 0, against = 0;
-  for (std::size_t k = 0; k < n; ++k) {
+  for (std::size_t k = range.first; k < range.last; ++k) {
     Contact &c = contacts[k];
     const Body bi = bodies[c.i], bj = bodies[c.j];
     const double v = dot(c.normal, bi - bj) + c.bias;
@@ -72,10 +71,10 @@ NSCD_INLINE Local visit_contact(const Contact &c, const Local &now, const Split<
   return next;
 }
 
-// One sweep with friction; M is Planar or Spatial. Visits do `share` of their step.
+// The same with friction; M is Planar or Spatial. Visits do `share` of their step.
 template <class Law, class M, bool accelerated = false>
-NSCD_HOT Swept frictional_sweep(Problem &problem, [[maybe_unused]] double *carried, double parameter, double share,
-                                const Momentum &momentum = {})
+NSCD_HOT Swept frictional_sweep(Problem &problem, const Range &range, [[maybe_unused]] double *carried,
+                                double parameter, double share, const Momentum &momentum = {})
 {
   [[maybe_unused]] const double gain = 1 + momentum.share();
   [[maybe_unused]] double *const previous = momentum.previous;
@@ -86,7 +85,7 @@ NSCD_HOT Swept frictional_sweep(Problem &problem, [[maybe_unused]] double *carri
   const double response = problem.sliding.spin_response, ratio = 1 + response, ratio_inverse = 1 / ratio;
   Vec4 corrected{};
   double against = 0;
-  for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
+  for (std::size_t k = range.first; k < range.last; ++k) {
     Contact &c = problem.contacts[k];
     auto &slide = slides[k];
     const Body bi = bodies[c.i], bj = bodies[c.j];
@@ -134,8 +133,9 @@ SolverReport nlgs_with_friction(Problem &problem, const SolverOptions &options)
   Relaxation relaxation;
   const auto once = [&] {
     const double share = relaxation.share();
-    const Swept swept =
-        sweep_across(problem, [&] { return frictional_sweep<Law, M>(problem, carried, options.parameter, share); });
+    const Swept swept = sweep_across(problem, [&](const Range &range) {
+      return frictional_sweep<Law, M>(problem, range, carried, options.parameter, share);
+    });
     relaxation.look(swept.corrected / share);
     return swept.corrected / share;
   };
@@ -151,7 +151,8 @@ SolverReport nlgs_without_friction(Problem &problem, const SolverOptions &option
     carried = problem.workspace.numbers.data();
   }
   const auto once = [&] {
-    return sweep_across(problem, [&] { return sweep<Law>(problem, carried, options.parameter); }).corrected;
+    const auto some = [&](const Range &range) { return sweep<Law>(problem, range, carried, options.parameter); };
+    return sweep_across(problem, some).corrected;
   };
   return iterate(extent(problem), options, once, [&] { return measure_across(problem, carried); });
 }

@@ -17,6 +17,8 @@ struct Workspace {
 };
 
 class Halo;
+class Parts;
+class Team;
 
 struct Problem {
   std::span<Body> bodies;       // 32 B aligned; in: free velocities plus what the start impulses gave; out: solution
@@ -26,6 +28,8 @@ struct Problem {
   Workspace &workspace;
   Sliding sliding{};            // tangential impulses and spins, in and out as these; nothing in a frictionless scene
   Halo *halo = nullptr;         // bodies that contacts of other ranks touch too; none on one rank
+  Team *team = nullptr;         // threads; none: the caller's alone
+  const Parts *parts = nullptr;   // in which the contacts are ordered, for the team
 };
 
 }    // namespace nscd

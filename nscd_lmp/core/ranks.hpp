@@ -24,6 +24,7 @@ class Ranks {
   virtual ~Ranks() = default;
   virtual int rank() const = 0;
   virtual int count() const = 0;
+  virtual int on_this_machine() const = 0;   // this one included
 
   // Collective; in place, over all ranks; the same bits on every one.
   virtual void sum(std::span<double> numbers) = 0;

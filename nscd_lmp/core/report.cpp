@@ -90,10 +90,12 @@ static std::string describe_restitution(const Settings &s)
   return text.str();
 }
 
-static std::string describe_ranks(const Halo *halo)
+static std::string describe_ranks(const Halo *halo, int threads)
 {
-  if (!halo) return "one rank: no exchange";
-  return std::to_string(halo->ranks().count()) + " ranks: grains that several touch are exchanged every iteration";
+  const std::string team = threads > 1 ? std::to_string(threads) + " threads" : "";
+  if (!halo) return team.empty() ? "one rank: no exchange" : "one rank, " + team + ": no exchange";
+  return std::to_string(halo->ranks().count()) + (team.empty() ? " ranks" : " ranks, " + team + " each") +
+         ": grains that several ranks touch are exchanged every iteration";
 }
 
 std::string describe(const Step &step)
@@ -104,7 +106,7 @@ std::string describe(const Step &step)
        << s.tol << (s.criterion == Stop::natural ? " (natural map)" : "") << ", " << s.walls.size()
        << (s.walls.size() == 1 ? " wall" : " walls")
        << "; " << describe_model(s, step.state().friction) << "; " << describe_restitution(s)
-       << "; " << describe_ranks(step.halo());
+       << "; " << describe_ranks(step.halo(), s.threads);
   return text.str();
 }
 

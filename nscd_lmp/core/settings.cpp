@@ -3,6 +3,7 @@
 #include "error.hpp"
 #include "law.hpp"
 #include "solver.hpp"
+#include "team.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -121,6 +122,8 @@ Settings checked(Settings s, int dimension)
   if (s.maxiter < 1) fail("maxiter = ", s.maxiter, " must be at least 1");
   if (s.frictional() && !solver.friction)
     fail("solver ", solver.name, " is for contacts without friction: choose another, or leave friction out");
+  if (s.threads < 1 || s.threads > most_threads)
+    fail("threads = ", s.threads, " is outside [1, ", most_threads, "]: they are of each rank, and share its contacts");
   check_parameter("rho", s.rho, solver);
   check_parameter("gamma", s.gamma, solver);
   for (std::size_t k = 0; k < s.walls.size(); ++k) normalise(s.walls[k], k);

@@ -45,6 +45,7 @@ struct Settings {
   double theta = 0.5;            // law moreau
   double recovery = 0.2;         // law gap: share of an overlap given back per step, speed-limited
   Unconverged unconverged = Unconverged::warn;
+  int threads = 1;               // of each rank
   std::vector<Plane> walls;
 
   double wall_friction(std::size_t wall) const { return walls[wall].friction.value_or(friction); }

@@ -6,6 +6,7 @@
 #include "friction.hpp"
 #include "halo.hpp"
 #include "hot.hpp"
+#include "parts.hpp"
 #include "settings.hpp"
 #include "views.hpp"
 
@@ -43,6 +44,10 @@ struct Friction {
   }
 };
 
+// Walls are bodies of infinite mass. Several copies, used in turn: consecutive wall contacts then do not wait
+// for each other's store to the same body.
+constexpr int obstacle_copies = 16;
+
 // Grains of other ranks that have images here: bodies owned..owned + count - 1.
 struct Copies {
   int count = 0;
@@ -61,24 +66,28 @@ struct State {
   std::vector<int> owner{};              // (owned + ghosts) index of the body that an atom is (an image of)
   std::vector<std::pair<std::int32_t, int>> own_tags{};   // sorted: tag and index of owned atoms, if there are images
   Copies copies{};
-  AlignedVector<Body> bodies{};          // (moving() + obstacle_copies)
+  AlignedVector<Body> bodies{};          // (moving() + obstacle_copies a slab)
   AlignedVector<Vec4> displacement{};    // (moving()) from where contacts were sought to q_{k+1}
   std::vector<Contact> contacts{};
   std::vector<ContactInfo> infos{};      // beside contacts
   std::vector<double> impact_impulse{};  // beside contacts, N s, of impacts resolved ahead of them; or empty
 
   Friction friction{};
+  Slabs slabs{1};                        // of threads
 
   std::vector<Candidate> found{};        // listed pairs that are near enough to watch, the first found_count
   std::size_t found_count = 0;
-  std::vector<Candidate> touching{};     // contacts-to-be, in list order
+  std::vector<Candidate> touching{};     // contacts-to-be, in list order, or by part where threads share them
   std::vector<Candidate> near{};         // watched by law gap: made contacts if the solution drives them together
+  std::vector<Candidate> ordered{};      // scratch
 
   double watch = 0;                    // surface distance within which pairs are watched, m
   double smooth_kick = 0;              // largest |dt f / m| of the step, m/s
 
   // Bodies that are grains, of this rank or copies of others'.
   int moving() const { return grains.owned + copies.count; }
+  // Body that stands for a wall in contact k of body i.
+  int obstacle(int i, std::size_t k) const { return moving() + obstacle_copies * slabs.of(i) + int(k % obstacle_copies); }
 };
 
 // Over all ranks.
@@ -99,9 +108,5 @@ NSCD_INLINE Vec4 smooth_kick(const State &s, int i)
   const double *f = s.grains.f + 3 * std::size_t(i);
   return Vec4{f[0], f[1], f[2], 0} * (s.dt * s.grains.force_to_acceleration * s.bodies[i][3]);
 }
-
-// Walls are bodies of infinite mass. Several copies, used in turn: consecutive wall contacts then do not wait
-// for each other's store to the same body.
-constexpr int obstacle_copies = 16;
 
 }    // namespace nscd

@@ -25,9 +25,12 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
     settings_(checked(settings, dimension)), solver_(&find_solver(settings_.solver)), custom_(std::move(custom)),
     law_(find_law(settings_.law).make()), state_{.settings = settings_, .grains = {}, .dimension = dimension},
     halo_(ranks && ranks->count() > 1 ? std::make_unique<Halo>(*ranks) : nullptr),
-    prediction_(law_->prediction(settings_)), look_ahead_(law_->looks_ahead() ? 1 : 0)
+    team_(settings_.threads > 1 ? std::make_unique<Team>(settings_.threads) : nullptr),
+    prediction_(law_->prediction(settings_)), look_ahead_(law_->looks_ahead() ? 1 : 0),
+    crowding_(nscd::crowding(settings_.threads, ranks))
 {
   state_.halo = halo_.get();
+  state_.slabs = Slabs(settings_.threads);
   options_.tol = settings_.tol;
   options_.stop = settings_.criterion;
   options_.maxiter = settings_.maxiter;
@@ -74,6 +77,7 @@ void Step::prepare(const PairList &pairs)
     if (state_.dimension == 2) require_planar(state_);
     list_.inspect(state_, pairs);
   });
+  if (list_.is_new()) state_.slabs.forget();
   if (halo_ && list_.is_new()) {
     halo_->plan(state_);
     if (settings_.warmstart) memory_.follow_grains(*halo_, state_.friction.model);
@@ -115,9 +119,21 @@ void Step::ask_custom(std::size_t count)
   for (std::size_t k = 0; k < count; ++k) write_impulse(state_, k, &impulses[k * width]);
 }
 
+// Puts the first contacts in the threads' order, if there are enough of them: few are swept faster by one thread than
+// threads tell each other so.
+void Step::share_among_threads(std::size_t contacts)
+{
+  constexpr std::size_t worth_a_thread = 1000;
+  shared_among_threads_ = team_ && contacts >= worth_a_thread * std::size_t(team_->size());
+  if (!shared_among_threads_) return;
+  const bool moved = state_.slabs.order_contacts(state_, contacts);
+  if (moved && halo_) halo_->find_touching(state_);
+}
+
 // With friction the solution is kept from making energy; what a custom solver answers is taken as it is.
 void Step::solve_within_energy(const Part &part, EnergyLimit::From from)
 {
+  share_among_threads(part.contacts);
   const bool newton = part.e != part.e_t;
   const auto solve = [&] { return solve_part(part); };
   const bool as_it_is = custom_ || state_.friction.model == Model::frictionless;
@@ -148,6 +164,10 @@ bool Step::solve_part(const Part &part)
   const std::span contacts = std::span(state_.contacts).first(part.contacts);
   Problem problem{state_.bodies, contacts, part.e, part.norm, workspace_, sliding(state_, part.e_t),
                   halo_.get()};
+  if (shared_among_threads_) {
+    problem.team = team_.get();
+    problem.parts = &state_.slabs.parts();
+  }
   const SolverReport solved = solve_problem(problem);
   report_.seconds_solver += seconds(start, Clock::now());
   if (!std::isfinite(solved.criterion.total()))

@@ -7,6 +7,7 @@
 #include "list_guard.hpp"
 #include "solver.hpp"
 #include "state.hpp"
+#include "team.hpp"
 #include "warm_start.hpp"
 
 #include <functional>
@@ -56,6 +57,8 @@ class Step {
   bool has_custom_solver() const { return bool(custom_); }
   const State &state() const { return state_; }
   const Halo *halo() const { return halo_.get(); }
+  // What users are to be told of threads without cores of their own; empty if there are none.
+  const std::string &crowding() const { return crowding_; }
 
   // The impulses that the next step starts from, to be kept between runs.
   WarmStart &memory() { return memory_; }
@@ -81,6 +84,7 @@ class Step {
     double norm;           // of free velocities and biases
   };
   bool solve_part(const Part &part);
+  void share_among_threads(std::size_t contacts);
   SolverReport solve_problem(Problem &problem);
   void solve_within_energy(const Part &part, EnergyLimit::From from);
   void ask_custom(std::size_t count);
@@ -94,6 +98,7 @@ class Step {
   const std::unique_ptr<Law> law_;
   State state_;
   const std::unique_ptr<Halo> halo_;   // none on one rank
+  const std::unique_ptr<Team> team_;   // none on one thread
   ListGuard list_;
   WarmStart memory_;
   EnergyLimit energy_limit_;
@@ -105,9 +110,11 @@ class Step {
   AlignedVector<Body> free_bodies_;  // as gathered, where impacts may have to be resolved again
   AlignedVector<Vec4> free_spins_;
   bool energy_limited_ = false;    // in this step
+  bool shared_among_threads_ = false;   // the contacts that are being solved
   double free_norm_ = 0;           // of the step's contacts, m/s
   double listed_ = 0;              // as Reach has it
   bool wants_rebuild_ = false;
+  const std::string crowding_;
 };
 
 }    // namespace nscd

@@ -130,8 +130,9 @@ void FixNscd::setup(int /*vflag*/)
   step_->begin_run(neighbor->ago == 0);
   steps_ = 0;
   nscd_progress.begin_run(update->beginstep, update->endstep, update->ntimestep);
-  if (comm->me == 0)
-    utils::logmesg(lmp, "fix nscd {}: {}\n", id, nscd::describe(*step_));
+  if (comm->me != 0) return;
+  if (!step_->crowding().empty()) error->warning(FLERR, "Fix nscd {}: {}", id, step_->crowding());
+  utils::logmesg(lmp, "fix nscd {}: {}\n", id, nscd::describe(*step_));
 }
 
 // Surface distance up to which all pairs were listed at the last build: over the type pairs, cutoff + skin less

@@ -11,14 +11,19 @@ namespace {
 constexpr int parcel_tag = 0;
 constexpr int letter_tags[] = {1, 2};   // in turn: a rank may be one delivery ahead of another, not two
 
-// MPI that waits keeps its core.
-bool is_crowded(MPI_Comm comm)
+int count_on_this_machine(MPI_Comm comm)
 {
   MPI_Comm machine;
   MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
   int ranks = 0;
   MPI_Comm_size(machine, &ranks);
   MPI_Comm_free(&machine);
+  return ranks;
+}
+
+// MPI that waits keeps its core.
+bool are_crowded(int ranks)
+{
   cpu_set_t cores;
   return sched_getaffinity(0, sizeof cores, &cores) == 0 && ranks > CPU_COUNT(&cores);
 }
@@ -30,7 +35,8 @@ MpiRanks::MpiRanks(MPI_Comm world)
   MPI_Comm_dup(world, &comm_);
   MPI_Comm_rank(comm_, &rank_);
   MPI_Comm_size(comm_, &count_);
-  crowded_ = is_crowded(comm_);
+  on_this_machine_ = count_on_this_machine(comm_);
+  crowded_ = are_crowded(on_this_machine_);
 }
 
 MpiRanks::~MpiRanks()

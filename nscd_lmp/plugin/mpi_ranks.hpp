@@ -17,6 +17,7 @@ class MpiRanks final : public Ranks {
 
   int rank() const override { return rank_; }
   int count() const override { return count_; }
+  int on_this_machine() const override { return on_this_machine_; }
   void sum(std::span<double> numbers) override;
   void max(std::span<double> numbers) override;
   void exchange(std::span<const Parcel> out, std::span<const Parcel> in) override;
@@ -27,7 +28,7 @@ class MpiRanks final : public Ranks {
   void reduce(std::span<double> numbers, MPI_Op operation);
 
   MPI_Comm comm_;
-  int rank_, count_;
+  int rank_, count_, on_this_machine_;
   int letters_tag_ = 0;
   bool crowded_;   // more ranks on this machine than cores: those that wait must let the others work
   std::vector<MPI_Request> requests_;

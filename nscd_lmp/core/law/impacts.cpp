@@ -1,5 +1,6 @@
 #include "impacts.hpp"
 
+#include "../contact_order.hpp"
 #include "../slides.hpp"
 
 #include <algorithm>
@@ -17,18 +18,6 @@ void smooth_half(State &s, double sign)
 {
   for (int i = 0; i < s.moving(); ++i) s.bodies[i] += smooth_kick(s, i) * (0.5 * sign);
   if (s.friction.model != Model::frictionless) add_smooth_spins(s, 0.5 * sign);
-}
-
-void swap_contacts(State &s, std::size_t a, std::size_t b)
-{
-  std::swap(s.contacts[a], s.contacts[b]);
-  std::swap(s.infos[a], s.infos[b]);
-  if (!s.impact_impulse.empty()) std::swap(s.impact_impulse[a], s.impact_impulse[b]);
-  if (!s.friction.impact_impulse.empty()) std::swap(s.friction.impact_impulse[a], s.friction.impact_impulse[b]);
-  with_friction(s.friction.model, [&]<class M>(M) {
-    auto &slides = s.friction.slides<M>();
-    std::swap(slides[a], slides[b]);
-  });
 }
 
 // Biases of an impact: what is left of the velocity now, reversed.

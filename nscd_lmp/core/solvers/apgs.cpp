@@ -29,9 +29,9 @@ struct Exact : Pdas {
 };
 
 // The inverse mass in a body's fourth place does not change, and stays.
-NSCD_HOT void extrapolate_vectors(double share, std::size_t count, Vec4 *vectors, Vec4 *last)
+NSCD_HOT void extrapolate_vectors(double share, const Range &range, Vec4 *vectors, Vec4 *last)
 {
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = range.first; i < range.last; ++i) {
     const Vec4 now = vectors[i];
     vectors[i] = now + (now - last[i]) * share;
     last[i] = now;
@@ -56,8 +56,10 @@ class BodyMomentum {
   void extrapolate(double share)
   {
     Vec4 *const last = problem_.workspace.vectors.data() + kept_each();
-    extrapolate_vectors(share, count_, problem_.bodies.data(), last);
-    if (problem_.sliding.spins) extrapolate_vectors(share, count_, problem_.sliding.spins, last + count_);
+    in_chunks(problem_.team, count_, [&](const Range &range, int) {
+      extrapolate_vectors(share, range, problem_.bodies.data(), last);
+      if (problem_.sliding.spins) extrapolate_vectors(share, range, problem_.sliding.spins, last + count_);
+    });
   }
 
   // add(k) hands contact k's bodies what it has gained since the start. The last sweep is moved along, or the next one
@@ -94,7 +96,7 @@ class BodyMomentum {
 
 constexpr int restored_every = 200;  // sweeps: a pass over the contacts costs nothing then
 
-// sweep(momentum, share) sweeps once; add(k) is as above. The workspace starts with the impulses of the last sweep.
+// sweep(range, momentum, share) sweeps over some of the contacts; add(k) is as above. The workspace starts with the impulses of the last sweep.
 // What looks solved is looked at again with bodies that carry their impulses.
 template <class Sweep, class Add>
 SolverReport accelerate(Problem &problem, const SolverOptions &options, Sweep sweep, Add add)
@@ -106,7 +108,8 @@ SolverReport accelerate(Problem &problem, const SolverOptions &options, Sweep sw
   const auto once = [&] {
     if (++sweeps % restored_every == 0) bodies.restore(add);
     bodies.extrapolate(pace.momentum.share());
-    return pace.look(sweep_across(problem, [&] { return sweep(pace.momentum, pace.share()); }));
+    const auto some = [&](const Range &range) { return sweep(range, pace.momentum, pace.share()); };
+    return pace.look(sweep_across(problem, some));
   };
   const auto look = [&] {
     const Criterion seen = measure_across(problem);
@@ -131,8 +134,8 @@ SolverReport apgs_with_friction(Problem &problem, const SolverOptions &options)
   auto *const slides = problem.sliding.slides<M>();
   for (std::size_t k = 0; k < 2 * n; ++k)
     store_carried<Tangent>(&numbers[k * width], {problem.contacts[k % n].impulse, slides[k % n].impulse});
-  const auto sweep = [&](const Momentum &momentum, double share) {
-    return frictional_sweep<Pdas, M, true>(problem, nullptr, 1, share, momentum);
+  const auto sweep = [&](const Range &range, const Momentum &momentum, double share) {
+    return frictional_sweep<Pdas, M, true>(problem, range, nullptr, 1, share, momentum);
   };
   return accelerate(problem, options, sweep, [&](std::size_t k) {
     const Contact &c = problem.contacts[k];
@@ -149,10 +152,10 @@ SolverReport apgs_without_friction(Problem &problem, const SolverOptions &option
   std::vector<double> &numbers = problem.workspace.numbers;  // as with friction
   numbers.resize(2 * n);
   for (std::size_t k = 0; k < 2 * n; ++k) numbers[k] = problem.contacts[k % n].impulse;
-  const auto sweep_once = [&](const Momentum &momentum, double) {
-    return sweep<Exact, true>(problem, nullptr, 1, momentum);
+  const auto sweep_some = [&](const Range &range, const Momentum &momentum, double) {
+    return sweep<Exact, true>(problem, range, nullptr, 1, momentum);
   };
-  return accelerate(problem, options, sweep_once, [&](std::size_t k) {
+  return accelerate(problem, options, sweep_some, [&](std::size_t k) {
     const Contact &c = problem.contacts[k];
     apply_impulse(c, c.impulse - numbers[n + k], problem.bodies.data());
   });
