@@ -15,6 +15,8 @@ from nscd_lmp.contact_system import ContactSystem
 from nscd_lmp.door import attach
 from nscd_lmp.fclib import read_fclib, read_fclib_solution, write_fclib
 from nscd_lmp.solve import Solution, solve
+from nscd_lmp.sweep import sweep
+from nscd_lmp.sweeps.table import SweepTable
 from nscd_lmp.walls import Plane
 
 __version__ = "0.1.0"
@@ -29,9 +31,11 @@ __all__ = [
     "NscdError",
     "Plane",
     "Solution",
+    "SweepTable",
     "attach",
     "read_fclib",
     "read_fclib_solution",
     "solve",
+    "sweep",
     "write_fclib",
 ]

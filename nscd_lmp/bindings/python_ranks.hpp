@@ -9,7 +9,8 @@ namespace nscd {
 
 class PythonRanks final : public Ranks {
  public:
-  // `ranks` has rank, count, on_this_machine, and the methods sum, max, exchange and deliver of Ranks, on float64 arrays.
+  // `ranks` has rank, count, on_this_machine, and the methods sum, max, exchange and deliver of Ranks, on float64
+  // arrays.
   explicit PythonRanks(nanobind::object ranks);
 
   int rank() const override { return rank_; }

@@ -1,4 +1,5 @@
-// Iterations of a solver on several ranks, whose threads they use (across_threads.hpp): masses split while it works, corrections put together, sums over all ranks.
+// Iterations of a solver on several ranks, whose threads they use (across_threads.hpp): masses split while it works,
+// corrections put together, sums over all ranks.
 // On one rank nothing of it is left but a test of a pointer.
 #pragma once
 

@@ -23,7 +23,8 @@
 
 namespace nscd {
 
-// One frictionless sweep over some of the contacts, with momentum if there are impulses before the last one (bodies are extrapolated already).
+// One frictionless sweep over some of the contacts, with momentum if there are impulses before the last one (bodies are
+// extrapolated already).
 template <class Law, bool accelerated = false>
 NSCD_HOT Swept sweep(Problem &problem, const Range &range, [[maybe_unused]] double *carried, double parameter,
                      const Momentum &momentum = {})

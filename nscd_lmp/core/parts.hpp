@@ -7,8 +7,8 @@
 //   T .. 2T-1      between slabs t and t + 1   then those of even t at the same time, then those of odd t
 //   2T             all others                  last, by one thread
 //
-// Parts that are swept at the same time share no body, so a sweep is one of Gauss-Seidel in this order, and does the same
-// to the last bit however the threads are scheduled. Walls are bodies of each slab's own.
+// Parts that are swept at the same time share no body, so a sweep is one of Gauss-Seidel in this order, and does the
+// same to the last bit however the threads are scheduled. Walls are bodies of each slab's own.
 #pragma once
 
 #include <cstddef>

@@ -87,7 +87,10 @@ struct State {
   // Bodies that are grains, of this rank or copies of others'.
   int moving() const { return grains.owned + copies.count; }
   // Body that stands for a wall in contact k of body i.
-  int obstacle(int i, std::size_t k) const { return moving() + obstacle_copies * slabs.of(i) + int(k % obstacle_copies); }
+  int obstacle(int i, std::size_t k) const
+  {
+    return moving() + obstacle_copies * slabs.of(i) + int(k % obstacle_copies);
+  }
 };
 
 // Over all ranks.

@@ -96,7 +96,8 @@ class BodyMomentum {
 
 constexpr int restored_every = 200;  // sweeps: a pass over the contacts costs nothing then
 
-// sweep(range, momentum, share) sweeps over some of the contacts; add(k) is as above. The workspace starts with the impulses of the last sweep.
+// sweep(range, momentum, share) sweeps over some of the contacts; add(k) is as above. The workspace starts with the
+// impulses of the last sweep.
 // What looks solved is looked at again with bodies that carry their impulses.
 template <class Sweep, class Add>
 SolverReport accelerate(Problem &problem, const SolverOptions &options, Sweep sweep, Add add)

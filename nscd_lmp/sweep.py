@@ -1,0 +1,216 @@
+"""Many runs of one script or function: a grid or list of variables' values, and a table at the end."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import sysconfig
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from mpi4py import MPI
+from rich.console import Console
+
+from nscd_lmp._core import NscdError
+from nscd_lmp.sweeps.cases import OWN_COLUMNS, Case, make_cases
+from nscd_lmp.sweeps.function import FunctionTask, is_reference, refuse_while_loading
+from nscd_lmp.sweeps.pool import run_cases
+from nscd_lmp.sweeps.record import CASE, claimed, finished, write_json
+from nscd_lmp.sweeps.script import ScriptTask
+from nscd_lmp.sweeps.table import Row, SweepTable
+from nscd_lmp.sweeps.watch import Watch
+
+Result = dict[str, Any]
+
+TABLE = "sweep.csv"
+
+
+def sweep(
+    run: str | os.PathLike[str] | Callable[..., Any],
+    variables: Mapping[str, Any] | None = None,
+    *,
+    cases: Iterable[Mapping[str, Any]] | None = None,
+    folder: str | os.PathLike[str],
+    processes: int = 1,
+    ranks: int = 1,
+    timeout: float | None = None,
+    results: str | Sequence[str] | Mapping[str, str] = (),
+    retry: bool = False,
+    progress: bool = True,
+) -> SweepTable:
+    """Run a LAMMPS script or a Python function for each of many cases.
+
+    Each case runs in a process of its own with a folder of its own, ``folder/CASE``. One that fails, crashes or takes
+    too long is a row of the table like the others. Cases that an earlier call has finished are not run again: a
+    sweep that was killed goes on with the same call.
+
+    Parameters
+    ----------
+    run : path, function or str
+        A LAMMPS script, or a function ``f(folder, **variables)`` that returns a dict of numbers, strings, True, False
+        and None. It is at the top level of a module or file, given as itself or by ``"module:name"`` or
+        ``"file.py:name"``; `folder` is the case's, as a ``pathlib.Path``. Scripts and functions run in the working
+        directory of the caller. A script has the case's folder as variable ``folder``.
+    variables : mapping, optional
+        Values by name. A list (tuple, range, array) is an axis of the grid, any other value the same in all cases. A
+        script gets them as index variables, as by ``lmp -var``; ``${folder}`` in a string is its case's folder.
+    cases : iterable of mappings, optional
+        A list of cases in place of a grid; with a grid, each is combined with each of its points.
+    folder : path
+        Where all is kept; made if it is not there.
+    processes : int
+        How many cases run side by side.
+    ranks : int
+        MPI ranks of each case, started by ``mpiexec``. A function is then called on every rank, and rank 0's results
+        are taken.
+    timeout : float, optional
+        Seconds after which a case is stopped.
+    results : str, sequence of str or mapping
+        Of a script: what LAMMPS tells at its end, as formulas of an equal-style variable, such as ``ke``,
+        ``f_nscd[3]``, ``v_name``, ``c_ID[1]``; a mapping gives each a name. The totals of fix nscd and its vector
+        (``last_...``) come by themselves.
+    retry : bool
+        Run again what failed or took too long in an earlier call.
+    progress : bool
+        Show on standard error how far the sweep is.
+
+    Returns
+    -------
+    SweepTable
+        Rows in the order of the cases: variables, results, ``status`` (ok, failed, timeout, killed), ``seconds``
+        (wall, of the run alone), ``message`` (why it failed) and ``folder``. ``folder/sweep.csv`` has the same.
+
+    Raises
+    ------
+    NscdError
+        Something cannot be as it was given, or `folder` holds another sweep; nothing has run then.
+    KeyboardInterrupt
+        Ctrl-C was pressed: what ran was stopped, what was finished is kept and in the table.
+    """
+    refuse_while_loading()
+    _check_numbers(processes, ranks, timeout)
+    task = _new_task(run, results)
+    made, fixed = make_cases(variables, cases)
+    home = _short(Path(folder))
+    task.check(made, home)
+    with claimed(home, task.name, fixed):
+        going = _Sweep(task, made, home, ranks)
+        watching = Console(stderr=True, quiet=not progress, highlight=False)
+        return going.run(processes, timeout, retry, watching)
+
+
+class _Sweep:
+    """A sweep whose folder is claimed."""
+
+    def __init__(self, task: ScriptTask | FunctionTask, cases: list[Case], home: Path, ranks: int) -> None:
+        self.task = task
+        self.cases = {home / case.name: case for case in cases}
+        self.home = home
+        self.ranks = ranks
+        self.mpiexec = _mpiexec(ranks)
+        self.found: dict[Path, Result] = {}
+
+    def run(self, processes: int, timeout: float | None, retry: bool, console: Console) -> SweepTable:
+        """Run what is not there, and write the table however that ends."""
+        for folder, case in self.cases.items():
+            result = finished(folder, self.key(case), retry=retry, timeout=timeout)
+            if result is not None:
+                self.found[folder] = result
+        missing = [folder for folder in self.cases if folder not in self.found]
+        watch = Watch(console, len(self.cases), [self.row(folder) for folder in self.found])
+
+        def ended(folder: Path, result: Result) -> None:
+            self.found[folder] = result
+            watch.ended(folder.name, self.row(folder))
+
+        try:
+            with watch.on():
+                run_cases(map(self.prepare, missing), processes, timeout, ended)
+        finally:
+            table = SweepTable([self.row(folder) for folder in self.cases if folder in self.found], self.home / TABLE)
+            table.write()
+        return table
+
+    def key(self, case: Case) -> dict[str, Any]:
+        """Return all that a result depends on; one with another key is not that of the case."""
+        return {"variables": case.variables, "ranks": self.ranks} | self.task.key()
+
+    def prepare(self, folder: Path) -> tuple[Path, dict[str, Any]]:
+        """Make the folder of a case, empty but for what the worker has to know; return it with the key."""
+        case = self.cases[folder]
+        if (folder / CASE).exists():
+            shutil.rmtree(folder)
+        folder.mkdir(exist_ok=True)
+        path = [entry or os.getcwd() for entry in sys.path]
+        spec = {"variables": case.variables, "key": self.key(case), "mpiexec": self.mpiexec, "path": path}
+        write_json(folder / CASE, spec | self.task.spec(case, self.home))
+        return folder, self.key(case)
+
+    def row(self, folder: Path) -> Row:
+        """Return a finished case as a row of the table."""
+        variables, result = self.cases[folder].variables, self.found[folder]
+        taken = (*variables, *OWN_COLUMNS)
+        expected = ("steps", *self.task.results) if isinstance(self.task, ScriptTask) else ()
+        results = dict.fromkeys(expected) | result["results"]
+        return {
+            **variables,
+            **{f"result_{name}" if name in taken else name: value for name, value in results.items()},
+            "status": result["status"],
+            "seconds": result["seconds"],
+            "message": result["message"],
+            "folder": str(folder),
+        }
+
+
+def _new_task(
+    run: str | os.PathLike[str] | Callable[..., Any], results: str | Sequence[str] | Mapping[str, str]
+) -> ScriptTask | FunctionTask:
+    formulas = results if isinstance(results, Mapping) else {one: one for one in _listed(results)}
+    if (isinstance(run, str) and is_reference(run)) or not isinstance(run, str | os.PathLike):
+        if formulas:
+            raise NscdError("results are formulas for a LAMMPS script: a function returns its results as a dict")
+        return FunctionTask(run)
+    return ScriptTask(Path(run), formulas)
+
+
+def _short(folder: Path) -> Path:
+    """Return the path from the working directory if it is there: without the blanks of the folders above."""
+    return Path(os.path.relpath(folder)) if folder.resolve().is_relative_to(Path.cwd()) else folder.resolve()
+
+
+def _listed(names: str | Sequence[str]) -> Sequence[str]:
+    return [names] if isinstance(names, str) else names
+
+
+def _check_numbers(processes: int, ranks: int, timeout: float | None) -> None:
+    world = MPI.COMM_WORLD.Get_size()
+    if world > 1:
+        raise NscdError(
+            f"a sweep was begun on {world} MPI ranks, each of which would run all of it: start it without mpiexec,"
+            " and give processes (cases side by side) or ranks (of each case)"
+        )
+    for name, number in (("processes", processes), ("ranks", ranks)):
+        if number < 1:
+            raise NscdError(f"{name} = {number} must be 1 at least")
+    if timeout is not None and not timeout > 0:
+        raise NscdError(f"timeout = {timeout} s must be above 0; None is no limit")
+    cores = len(os.sched_getaffinity(0))
+    if processes * ranks > cores:
+        warnings.warn(
+            f"processes x ranks = {processes} x {ranks} is more than the {cores} cores: cases slow each other down, and"
+            " their seconds say little",
+            stacklevel=3,
+        )
+
+
+def _mpiexec(ranks: int) -> list[str]:
+    """Return the words that start a program on several ranks, none for one."""
+    if ranks == 1:
+        return []
+    program = shutil.which("mpiexec", path=sysconfig.get_path("scripts")) or shutil.which("mpiexec")
+    if program is None:
+        raise NscdError(f"ranks = {ranks} needs mpiexec, which is not there: pip install mpich, or take ranks = 1")
+    return [program, "-n", str(ranks)]
