@@ -47,15 +47,16 @@ def attach(
     lmp: Any,
     group: str = "all",
     *,
-    solver: str | PythonSolver = "pdas",
-    law: str = "gap",
+    solver: str | PythonSolver | None = None,
+    law: str | None = None,
     restitution: float = 0.0,
     friction: float | Literal["stick"] = 0.0,
     e_t: float = 0.0,
-    tol: float = 1e-7,
-    criterion: Literal["paper", "natural"] = "paper",
+    tol: float | None = None,
+    criterion: Literal["paper", "natural"] | None = None,
     maxiter: int = 1000,
-    warmstart: bool = True,
+    warmstart: bool | None = None,
+    paper: bool = False,
     walls: Sequence[Plane] = (),
     rho: float | None = None,
     gamma: float | None = None,
@@ -77,11 +78,11 @@ def attach(
         With ``atom_style sphere``; on any number of MPI ranks, all of which make the same calls.
     group : str
         Atoms to move; the others are obstacles of infinite mass.
-    solver : str or callable
-        A name of :data:`nscd_lmp.SOLVERS`, or a function that takes a :class:`ContactSystem` and returns the
+    solver : str or callable, optional
+        None: ``"auto"``. A name of :data:`nscd_lmp.SOLVERS`, or a function that takes a :class:`ContactSystem` and returns the
         impulses (N s), a float64 array of shape (n,), with friction (n, 2) in a planar scene and (n, 3) in space.
-    law : str
-        A name of :data:`nscd_lmp.LAWS`.
+    law : str, optional
+        A name of :data:`nscd_lmp.LAWS`. None: ``"gap"``.
     restitution : float
         Newton's coefficient e, 0 to 1.
     friction : float or "stick"
@@ -89,15 +90,20 @@ def attach(
         ``"stick"``: no slip while in contact.
     e_t : float
         Tangential restitution, 0 to 1.
-    tol : float
-        A step is solved when the criterion is below it.
-    criterion : str
-        ``"paper"``: (42) of Barboteu & Dumont (2017), in m/s, the mean over the contacts. ``"natural"``: the natural
-        map of all contacts over the norm of their velocities without impulses, as in :func:`nscd_lmp.solve`.
+    tol : float, optional
+        A step is solved when the criterion is below it. None: 1e-4 with
+        ``"natural"``, 5e-4 if there is friction; 1e-7 m/s with ``"paper"``.
+    criterion : str, optional
+        ``"natural"``: the natural map of all contacts over the norm of their velocities without impulses, as in
+        :func:`nscd_lmp.solve`. ``"paper"``: (42) of Barboteu & Dumont (2017), in m/s, the mean over the contacts.
+        None: ``"paper"`` if `tol` is given, otherwise ``"natural"``.
     maxiter : int
         Iterations after which a step is given up; see `unconverged`.
-    warmstart : bool
-        Start from the impulses of the step before.
+    warmstart : bool, optional
+        Start from the impulses of the step before. None: True.
+    paper : bool
+        The settings of Barboteu & Dumont (2017) for what is None above: ``pdas``, ``moreau``, tol 1e-7 m/s, no warm
+        start.
     walls : sequence of Plane
     rho, gamma : float, optional
         The solver's parameter as a multiple of 1/W_nn; None for its own default.
@@ -132,7 +138,7 @@ def attach(
         the positions and velocities are then those at the end of the last good step.
     """
     keywords = _keywords(
-        law=law, restitution=restitution, friction=friction, e_t=e_t or None, tol=tol, criterion=criterion,
+        paper=paper or None, law=law, restitution=restitution, friction=friction, e_t=e_t or None, tol=tol, criterion=criterion,
         maxiter=maxiter, warmstart=warmstart, rho=rho, gamma=gamma, theta=theta, recovery=recovery,
         unconverged=unconverged, inertia=inertia,
         threads=threads,
@@ -140,7 +146,7 @@ def attach(
     custom = None
     if callable(solver):
         custom = _with_contact_system(solver)
-    else:
+    elif solver is not None:
         keywords += ["solver", solver]
     for wall in walls:
         keywords += wall.keywords()

@@ -52,7 +52,7 @@ class Solution:
 
 def solve(
     problem: ContactProblem,
-    solver: str = "pdas",
+    solver: str = "auto",
     *,
     tol: float = 1e-8,
     maxiter: int = 10000,
@@ -82,7 +82,7 @@ def solve(
         radius mu p_n. Where a contact's own block of W is not diag(W_nn, W_tt, W_tt), W_nn and W_tt stand for a
         diagonal that is larger than the block.
         ``"paper"``: criterion (42) of Barboteu & Dumont (2017) in m/s, the mean over the contacts of motion,
-        bipotential and penetration, which :func:`attach` uses.
+        bipotential and penetration, which :func:`attach` takes for `tol` alone.
     rho, gamma : float, optional
         The solver's parameter as a multiple of 1/W_nn; None for its own default.
     unconverged : str

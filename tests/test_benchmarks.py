@@ -117,6 +117,17 @@ FILES = {
             "contacts_that_could_sleep",
         }
     },
+    "ingredients": {
+        "ingredients.csv": {
+            "ingredient",
+            "needed",
+            "grains",
+            "sweep_ratio",
+            "step_ratio",
+            "sweep_ns_with",
+            "step_us_with",
+        }
+    },
     "accuracy": {
         "accuracy.csv": {
             "part",

@@ -238,7 +238,7 @@ def check_history(found: nscd_lmp.Solution, criterion: str, tol: float) -> None:
 
 def test_unconverged_is_warned_of_raised_or_ignored_as_asked() -> None:
     problem = FRICTIONLESS["rank-deficient"].problem()
-    with pytest.warns(UserWarning, match=r"pdas ended after 3 iterations.*above tol = 1e-08: raise maxiter or tol"):
+    with pytest.warns(UserWarning, match=r"auto ended after 3 iterations.*above tol = 1e-08: raise maxiter or tol"):
         found = solve(problem, maxiter=3)
     assert not found.converged and found.iterations == 3 and found.residual > 1e-8
     with pytest.raises(NscdError, match=r"paper criterion at .* m/s, above"):

@@ -17,8 +17,8 @@ Array = NDArray[np.float64]
     ("words", "message"),
     [
         ({"solver": "newton?"}, r"unknown solver 'newton\?': choose one of .*pdas"),
-        ({"rho": 1.0}, r"rho is not a parameter of solver pdas, which takes gamma"),
-        ({"gamma": 0.0}, r"gamma = 0.0 must be > 0"),
+        ({"solver": "pdas", "rho": 1.0}, r"rho is not a parameter of solver pdas, which takes gamma"),
+        ({"solver": "pdas", "gamma": 0.0}, r"gamma = 0.0 must be > 0"),
         ({"tol": 0.0}, r"tol = 0.0 must be > 0"),
         ({"maxiter": 0}, r"maxiter = 0 must be at least 1"),
         ({"criterion": "energy"}, r"unknown criterion 'energy': choose one of natural, paper"),

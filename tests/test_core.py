@@ -1,7 +1,7 @@
 """The core's own tests (tests/core: C++, no Python, no LAMMPS), one test here for each one there.
 
 They run under the address and undefined behavior sanitizers, which stop a program at the first fault, those of threads
-under the thread sanitizer too; those that count allocations run without, since both replace ``operator new``.
+and ranks under the thread sanitizer too; those that count allocations run without, since both replace ``operator new``.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import pytest
 ROOT = Path(__file__).parent.parent
 SOURCES = ROOT / "tests" / "core"
 SANITIZERS = "address,undefined"
-THREADED = ("test_threads.cpp",)
+THREADED = ("test_halo.cpp", "test_threads.cpp")
 
 Program = Callable[..., str]
 

@@ -44,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--n", type=int, default=PAPER_GRAINS, help=f"number of grains, the box grows along [{PAPER_GRAINS}]"
     )
     parser.add_argument(
-        "--solver", choices=list(SOLVERS), default="pdas", metavar="NAME", help="one that `nscd-lmp info` lists [pdas]"
+        "--solver", choices=list(SOLVERS), default="auto", metavar="NAME", help="one that `nscd-lmp info` lists [auto]"
     )
 
 

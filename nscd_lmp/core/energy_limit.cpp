@@ -15,7 +15,7 @@ double negligible(const State &s, std::size_t count)
 {
   double impulses = 0;
   for (std::size_t k = 0; k < count; ++k) impulses += std::abs(s.contacts[k].impulse);
-  return tolerances * s.settings.tol * sum_everywhere(s, impulses);
+  return tolerances * s.tolerance * sum_everywhere(s, impulses);
 }
 
 void clear_biases(State &s, std::size_t count)

@@ -10,6 +10,11 @@
 
 namespace nscd {
 
+// Of the velocities that the step would have without contacts: leaves overlaps below 0.1 % of the radius, and is met in
+// every step of a bed that settles (docs/benchmarks.md).
+constexpr double tol_of_scene = 1e-4, tol_of_scene_with_friction = 5e-4;
+constexpr double tol_of_paper = 1e-7;   // m/s
+
 Unconverged parse_unconverged(const std::string &word)
 {
   for (const auto policy : {Unconverged::ignore, Unconverged::warn, Unconverged::error})
@@ -109,6 +114,24 @@ static void check_dimension(const Settings &s, int dimension)
            "dimension 3");
 }
 
+void follow_paper(Settings &s)
+{
+  s.solver = "pdas";
+  s.law = "moreau";
+  s.criterion = Stop::paper;
+  s.tol = tol_of_paper;
+  s.warmstart = false;
+}
+
+static void choose_tolerance(Settings &s)
+{
+  if (!s.criterion) s.criterion = s.tol ? Stop::paper : Stop::natural;
+  const double of_scene = s.frictional() ? tol_of_scene_with_friction : tol_of_scene;
+  if (!s.tol) s.tol = *s.criterion == Stop::paper ? tol_of_paper : of_scene;
+  if (!(*s.tol > 0 && std::isfinite(*s.tol)))
+    fail("tol = ", *s.tol, " must be > 0: it is the value of the criterion at which a step is solved");
+}
+
 Settings checked(Settings s, int dimension)
 {
   const SolverEntry &solver = find_solver(s.solver);
@@ -117,8 +140,7 @@ Settings checked(Settings s, int dimension)
   check_friction(s);
   require_range("theta", s.theta, 0, 1);
   require_range("recovery", s.recovery, 0, 1);
-  if (!(s.tol > 0 && std::isfinite(s.tol)))
-    fail("tol = ", s.tol, " must be > 0: it is the value of the criterion at which a step is solved");
+  choose_tolerance(s);
   if (s.maxiter < 1) fail("maxiter = ", s.maxiter, " must be at least 1");
   if (s.frictional() && !solver.friction)
     fail("solver ", solver.name, " is for contacts without friction: choose another, or leave friction out");

@@ -30,14 +30,15 @@ const char *name(Unconverged policy);
 Stop parse_stop(const std::string &word);
 
 struct Settings {
-  std::string solver = "pdas";
+  std::string solver = "auto";
   std::string law = "gap";
   double restitution = 0;        // Newton's e, 0..1
   double friction = 0;           // Coulomb's mu of pairs, and of walls without their own; may be `stick`
   double e_t = 0;                // tangential restitution, 0..1
   std::optional<Inertia> inertia;  // none: disc in dimension 2, sphere otherwise
-  double tol = 1e-7;             // on the criterion
-  Stop criterion = Stop::paper;
+  // On the criterion. Without both: natural, relative to the scene's own velocities; with tol alone: paper, in m/s.
+  std::optional<double> tol;
+  std::optional<Stop> criterion;
   int maxiter = 1000;
   bool warmstart = true;
   std::optional<double> rho;     // multiple of 1/W_nn; none: the solver's own default
@@ -62,8 +63,11 @@ constexpr double tolerances = 10;
 // rho or gamma, whichever the solver takes, as a multiple of 1/W_nn; 0 if it takes none.
 double solver_parameter(const Settings &settings, const SolverEntry &solver);
 
+// The settings of Barboteu & Dumont (2017): `paper yes`.
+void follow_paper(Settings &settings);
+
 // Raises Error (value, limit, remedy) for anything out of range or that does not fit the dimension; normalises the
-// walls' normals.
+// walls' normals, and fills in tol and criterion.
 Settings checked(Settings settings, int dimension = 3);
 
 }    // namespace nscd

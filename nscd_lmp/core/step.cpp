@@ -31,8 +31,8 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
 {
   state_.halo = halo_.get();
   state_.slabs = Slabs(settings_.threads);
-  options_.tol = settings_.tol;
-  options_.stop = settings_.criterion;
+  options_.tol = *settings_.tol;
+  options_.stop = *settings_.criterion;
   options_.maxiter = settings_.maxiter;
   options_.parameter = solver_parameter(settings_, *solver_);
   const Inertia inertia = settings_.inertia.value_or(dimension == 2 ? Inertia::disc : Inertia::sphere);
@@ -67,6 +67,9 @@ void Step::together(const std::function<void()> &local)
   else local();
 }
 
+// What velocities in a scene are worth: those that a step gives, or, where nothing pulls, a small part of the fastest.
+static double velocity_scale(double smooth_kick, double speed) { return std::max(smooth_kick, 1e-3 * speed); }
+
 // From arrays to bodies and spheres, here and of other ranks.
 void Step::prepare(const PairList &pairs)
 {
@@ -91,6 +94,8 @@ void Step::prepare(const PairList &pairs)
   gather_images(state_, prediction_, look_ahead_, {kick2, speed2});
   listed_ = -unlisted;
   const double speed = std::sqrt(speed2);
+  state_.tolerance = options_.tol;
+  if (options_.stop == Stop::natural) state_.tolerance *= velocity_scale(state_.smooth_kick, speed);
   require_reach({listed_, moved, longest_move(speed)}, speed);
 }
 
@@ -249,9 +254,9 @@ void Step::judge()
 {
   if (report_.converged) return;
   if (settings_.unconverged == Unconverged::error)
-    fail("step not solved: criterion ", settings_.criterion == Stop::paper ? "(42)" : "natural", " is ",
+    fail("step not solved: criterion ", options_.stop == Stop::paper ? "(42)" : "natural", " is ",
          judged(report_.criterion, options_), " after ", report_.iterations,
-         " iterations, tol is ", settings_.tol, ": raise maxiter or tol, or use `unconverged warn`");
+         " iterations, tol is ", options_.tol, ": raise maxiter or tol, or use `unconverged warn`");
   ++report_.unconverged;
 }
 

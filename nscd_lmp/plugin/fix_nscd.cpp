@@ -241,7 +241,7 @@ void FixNscd::post_run()
   const auto &report = step_->report();
   if (report.unconverged == 0 || step_->settings().unconverged != nscd::Unconverged::warn) return;
   error->warning(FLERR, "Fix nscd {}: {} of {} steps ended above tol {}: raise maxiter (now {}) or tol", id,
-                 report.unconverged, steps_, step_->settings().tol, step_->settings().maxiter);
+                 report.unconverged, steps_, *step_->settings().tol, step_->settings().maxiter);
 }
 
 bool FixNscd::local_rows_wanted() const { return rows_every_step_ || output->next == update->ntimestep; }

@@ -30,6 +30,15 @@ int Scene::add_image(int of, const Point &shift)
   return int(tag.size()) - 1;
 }
 
+int Scene::add_foreign_image(const Point &centre, double r, std::int32_t its_tag, int rank)
+{
+  x.insert(x.end(), centre.begin(), centre.end());
+  radius.push_back(r);
+  tag.push_back(its_tag);
+  home.push_back(rank);
+  return int(tag.size()) - 1;
+}
+
 void Scene::accelerate(const Point &a)
 {
   for (int i = 0; i < owned; ++i)
@@ -74,6 +83,7 @@ nscd::Grains Scene::grains()
   g.mass = mass.data();
   g.tag = tag.data();
   g.mask = mask.data();
+  if (!home.empty()) g.home = home.data();
   return g;
 }
 

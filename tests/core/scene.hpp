@@ -14,6 +14,7 @@ struct Scene {
   std::vector<double> x, v, f, omega, torque, radius, mass;
   std::vector<std::int32_t> tag;
   std::vector<int> mask;  // 1: moves, 2: an obstacle
+  std::vector<int> home;  // of images: rank that owns the grain; empty on one rank
   int owned = 0;
   bool newton = true;
   double reach = 1e9;     // the list below has all pairs
@@ -23,6 +24,8 @@ struct Scene {
   int add(const Point &centre, double r, double m = 1, const Point &velocity = {});
   int add_obstacle(const Point &centre, double r);
   int add_image(int of, const Point &shift);
+  // Of a grain of another rank.
+  int add_foreign_image(const Point &centre, double r, std::int32_t its_tag, int rank);
 
   // Sets the forces of the next step: m a on every grain, no torques.
   void accelerate(const Point &a);

@@ -130,7 +130,7 @@ static Scene periodic_row(bool newton)
 TEST(an_image_is_in_contact_as_its_owner)
 {
   Scene scene = periodic_row(true);
-  Step step(settings("law moreau"));
+  Step step(settings("law moreau tol 1e-7"));
   CHECK(scene.advance(step, instant).contacts == 2);
   // 1 and 2 run into 3: all three go on at the mean velocity.
   for (int i = 0; i < 3; ++i) CHECK_NEAR(scene.v[3 * i], -2.0 / 3, 1e-6);
@@ -257,7 +257,7 @@ TEST(watched_pairs_join_when_the_solution_drives_them_together)
     scene.add({0, 0, 0}, 1, 10, {1, 0, 0});
     scene.add({2.01, 0, 0}, 1, 1);
     if (!wall) scene.add({4.05, 0, 0}, 1, 1e6);
-    Step step(settings(wall ? "law gap wall plane 3.05 0 0 -1 0 0" : "law gap"));
+    Step step(settings(wall ? "law gap tol 1e-7 wall plane 3.05 0 0 -1 0 0" : "law gap tol 1e-7"));
     CHECK(scene.advance(step, 0.1).contacts == 2);
     CHECK(find_contact(step.state(), 1, wall ? -1 : 2) != nullptr);
     CHECK(step.report().largest_overlap < 1e-7);

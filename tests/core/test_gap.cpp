@@ -101,7 +101,7 @@ TEST(an_overlap_is_given_back_slowly)
     Scene scene;
     scene.add({0, 0, 1 - overlap}, 1, 2);
     scene.accelerate({0, 0, -g});
-    Step step(settings("law gap recovery 0.2" + floor_wall));
+    Step step(settings("law gap recovery 0.2 tol 1e-7" + floor_wall));
     scene.advance(step, dt);
     const double speed = std::min(0.2 * overlap / dt, 0.1 * g * dt + 1e-7);
     CHECK_NEAR(scene.v[2], speed, 1e-14);

@@ -108,7 +108,8 @@ TEST(a_warm_start_saves_the_iterations_of_a_resting_column)
   for (const bool warm : {false, true}) {
     Scene scene;
     for (int i = 0; i < 10; ++i) scene.add({0, 0, 0.999 + 1.999 * i}, 1, 2);
-    Step step(settings(std::string("law moreau wall plane 0 0 0 0 0 1 warmstart ") + (warm ? "yes" : "no")));
+    Step step(settings(std::string("solver pdas law moreau tol 1e-7 wall plane 0 0 0 0 0 1 warmstart ") +
+                       (warm ? "yes" : "no")));
     for (int k = 0; k < 3; ++k) {
       scene.accelerate({0, 0, -10});
       scene.advance(step, 0.01);

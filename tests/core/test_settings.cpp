@@ -21,9 +21,46 @@ TEST(keywords_set_what_they_name)
 TEST(no_keywords_leave_the_defaults)
 {
   const nscd::Settings s = checked("");
-  CHECK(s.solver == "pdas" && s.law == "gap" && s.restitution == 0 && s.tol == 1e-7 && s.maxiter == 1000);
+  CHECK(s.solver == "auto" && s.law == "gap" && s.restitution == 0 && s.maxiter == 1000);
+  CHECK(checked("friction 0.3").tol == 5e-4);
+  CHECK(s.tol == 1e-4 && s.criterion == nscd::Stop::natural && s.threads == 1);
   CHECK(s.warmstart && s.unconverged == nscd::Unconverged::warn && s.walls.empty());
   CHECK(!s.rho && !s.gamma);
+}
+
+TEST(tol_alone_is_in_metres_per_second_as_in_the_paper)
+{
+  CHECK(checked("tol 1e-9").criterion == nscd::Stop::paper);
+  CHECK(checked("criterion paper").tol == 1e-7);
+  const nscd::Settings both = checked("tol 1e-6 criterion natural");
+  CHECK(both.tol == 1e-6 && both.criterion == nscd::Stop::natural);
+}
+
+TEST(the_settings_of_the_paper_are_one_keyword_away)
+{
+  const nscd::Settings s = checked("paper yes");
+  CHECK(s.solver == "pdas" && s.law == "moreau" && !s.warmstart);
+  CHECK(s.tol == 1e-7 && s.criterion == nscd::Stop::paper);
+  CHECK(checked("paper yes solver sbp").solver == "sbp");
+  CHECK(checked("paper no").solver == checked("").solver);
+}
+
+// The same scene in other units of length and time: grains a thousand times as large, and steps as long as gravity asks.
+TEST(the_default_tolerance_follows_the_scene)
+{
+  int iterations[2];
+  for (const bool large : {false, true}) {
+    const double scale = large ? 1000 : 1;
+    Scene scene;
+    for (int i = 0; i < 10; ++i) scene.add({0, 0, scale * (1 + 2.0 * i)}, scale, scale * scale * scale);
+    nscd::Step step(settings("solver pdas wall plane 0 0 0 0 0 1"));
+    scene.accelerate({0, 0, -10 * scale});
+    scene.advance(step, 1e-3);
+    CHECK(step.report().converged);
+    CHECK_NEAR(step.state().tolerance, 1e-4 * 10 * scale * 1e-3, 1e-12 * scale);
+    iterations[large] = step.report().iterations;
+  }
+  CHECK(iterations[0] == iterations[1] && iterations[0] > 10);
 }
 
 TEST(a_later_keyword_overrides_an_earlier_one)
@@ -174,7 +211,7 @@ TEST(the_description_names_what_was_chosen)
 {
   const std::string words = "solver sal law moreau restitution 0.5 rho 0.3 wall plane 0 0 0 0 0 1";
   const std::string text = nscd::describe(nscd::Step(checked(words)));
-  for (const char *part : {"moreau", "SAL", "rho = 0.3/W_nn", "1 wall", "restitution 0.5", "tol 1e-07"})
+  for (const char *part : {"moreau", "SAL", "rho = 0.3/W_nn", "1 wall", "restitution 0.5", "tol 0.0001 (natural map)"})
     check::says(__FILE__, __LINE__, text, part);
 }
 

@@ -69,7 +69,7 @@ double Gap::gap_to_close(const State &s, const ContactInfo &info) const
 void Gap::set_bias(State &s, std::size_t first)
 {
   const double rate = 1 / s.dt, back = s.settings.recovery / s.dt;
-  const double cap = recovery_cap * s.smooth_kick + s.settings.tol;
+  const double cap = recovery_cap * s.smooth_kick + s.tolerance;
   for (std::size_t k = first; k < s.contacts.size(); ++k) {
     const double gap = s.friction.model == Model::frictionless ? s.infos[k].gap : gap_to_close(s, s.infos[k]);
     s.contacts[k].bias = std::max(gap * (gap < 0 ? back : rate), -cap);
@@ -119,7 +119,7 @@ NSCD_HOT void Gap::open_contacts(const State &s)
 void Gap::displace(State &s)
 {
   const std::size_t bodies = s.bodies.size();
-  slack_ = tolerances * s.settings.tol * s.dt;
+  slack_ = tolerances * s.tolerance * s.dt;
   mean_.resize(bodies);
   final_.assign(bodies, 0);
   for (std::size_t i = 0; i < bodies; ++i) {

@@ -34,7 +34,7 @@ void bias_impact(State &s, std::size_t k, double u)
 // double the memory of a contact.
 std::size_t select_closing(State &s)
 {
-  const double slow = resting_kicks * s.smooth_kick + tolerances * s.settings.tol;
+  const double slow = resting_kicks * s.smooth_kick + tolerances * s.tolerance;
   std::size_t closing = 0;
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
     const double u = normal_velocity(s.contacts[k], s.bodies.data());

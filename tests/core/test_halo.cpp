@@ -1,0 +1,103 @@
+// The halo, between ranks that are threads of this program: any number of them gives the velocities of one.
+#include "check.hpp"
+#include "scene.hpp"
+#include "thread_ranks.hpp"
+
+#include <cmath>
+
+using nscd::Step;
+
+// A heap in a box: the grains of rank r of `count` lie in its part of the x axis, all others are images.
+static Scene part_of_heap(int rank, int count)
+{
+  const int side = 6;
+  Random random(11);
+  Scene scene;
+  scene.newton = false;
+  struct Foreign {
+    Point centre;
+    std::int32_t tag;
+    int rank;
+  };
+  std::vector<Foreign> others;
+  for (int i = 0; i < side * side * side; ++i) {
+    const Point centre{1 + 1.999 * (i % side), 1 + 1.999 * (i / side % side), 0.999 + 1.999 * (i / (side * side))};
+    const Point velocity{random(-1, 1), random(-1, 1), random(-1, 1)};
+    const double mass = random(0.5, 1.5);
+    const int owner = std::min(count - 1, int(centre[0] / (2.0 * side) * count));
+    if (owner == rank) scene.tag[scene.add(centre, 1, mass, velocity)] = i + 1;
+    else others.push_back({centre, i + 1, owner});
+  }
+  for (const Foreign &other : others) scene.add_foreign_image(other.centre, 1, other.tag, other.rank);
+  return scene;
+}
+
+// Velocities and spins by tag after a step.
+static std::vector<double> velocities(const std::string &words, int count)
+{
+  std::vector<double> found(6 * 217);
+  on_ranks(count, [&](ThreadRanks &ranks) {
+    Scene scene = part_of_heap(ranks.rank(), count);
+    Step step(settings(words + " maxiter 100000 wall plane 0 0 0 0 0 1"), {}, 3, &ranks);
+    scene.accelerate({0, 0, -10});
+    scene.advance(step, 1e-3);
+    for (int i = 0; i < scene.owned; ++i)
+      for (int d = 0; d < 3; ++d) {
+        found[6 * scene.tag[i] + d] = scene.v[3 * i + d];
+        found[6 * scene.tag[i] + 3 + d] = scene.omega[3 * i + d];
+      }
+  });
+  return found;
+}
+
+static void check_ranks(const std::string &words, double tolerance)
+{
+  const std::vector<double> one = velocities(words, 1);
+  for (const int count : {2, 3, 4}) {
+    const std::vector<double> several = velocities(words, count);
+    CHECK(velocities(words, count) == several);
+    for (std::size_t k = 0; k < one.size(); ++k) CHECK_NEAR(several[k], one[k], tolerance);
+  }
+}
+
+TEST(any_number_of_ranks_gives_the_velocities_of_one)
+{
+  for (const char *solver : {"pdas", "apgs", "auto"})
+    check_ranks(std::string("tol 1e-10 solver ") + solver, 1e-6);
+}
+
+TEST(any_number_of_ranks_gives_the_velocities_of_one_under_law_moreau)
+{
+  check_ranks("tol 1e-10 law moreau restitution 0.5 solver apgs", 1e-6);
+}
+
+TEST(any_number_of_ranks_gives_the_velocities_of_one_with_a_little_friction)
+{
+  check_ranks("tol 1e-9 friction 0.01 solver apgs", 1e-5);
+}
+
+TEST(a_factorising_solver_is_the_inner_one_of_each_rank)
+{
+  const std::vector<double> one = velocities("tol 1e-8 solver active_set", 1);
+  const std::vector<double> two = velocities("tol 1e-8 solver active_set", 2);
+  for (std::size_t k = 0; k < one.size(); ++k) CHECK_NEAR(two[k], one[k], 1e-4);
+}
+
+// The error is thrown on all ranks, and nobody waits.
+TEST(what_fails_on_one_rank_fails_on_all)
+{
+  std::vector<std::string> told(3);
+  on_ranks(3, [&](ThreadRanks &ranks) {
+    Scene scene = part_of_heap(ranks.rank(), 3);
+    if (ranks.rank() == 2) scene.v[0] = NAN;
+    Step step(settings("wall plane 0 0 0 0 0 1"), {}, 3, &ranks);
+    scene.accelerate({0, 0, -10});
+    try {
+      scene.advance(step, 1e-3);
+    } catch (const nscd::Error &error) {
+      told[ranks.rank()] = error.what();
+    }
+  });
+  CHECK(told[0] == told[2] && told[1] == told[2]);
+  check::says(__FILE__, __LINE__, told[0], "not a finite number");
+}
