@@ -74,7 +74,13 @@ class Bed:
 def microseconds(bed: Bed, settings: dict[str, Any], more_walls: Sequence[nscd_lmp.Plane] = ()) -> tuple[float, float]:
     """Return what a step of the bed costs, the best of some: solver, and all of ours beside it."""
     bed.state.put_back(bed.lmp)
-    chosen = {"solver": "apgs", "law": "gap", "warmstart": False, "tol": 1e-14, "maxiter": ITERATIONS} | settings
+    chosen: dict[str, Any] = {
+        "solver": "apgs",
+        "law": "gap",
+        "warmstart": False,
+        "tol": 1e-14,
+        "maxiter": ITERATIONS,
+    } | settings
     attached = nscd_lmp.attach(bed.lmp, walls=[*bed.walls, *more_walls], unconverged="ignore", **chosen)
     bed.lmp.command(f"run {WARM_UP + STEPS} post no")
     stats = attached.stats[WARM_UP:]
@@ -118,7 +124,7 @@ def main(words: Sequence[str] | None = None) -> None:
     grains, repeats = (60, 1) if given.quick else (given.grains, given.repeats)
     record = Record("ingredients")
     record.print_origin()
-    beds = {
+    beds: dict[Scene, Bed] = {
         open_balls: Bed(*open_bed(grains, given.output, DT)),
         open_discs: Bed(*open_bed(grains, given.output, DT, open_discs, "settled_discs", 0.3)),
     }

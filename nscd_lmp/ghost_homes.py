@@ -47,7 +47,7 @@ def finder(lmp: Any, ranks: Ranks) -> Find:
         places = _places(lmp, x[remote])
         asked = {
             rank: remote[np.all(_above(lmp, places, lows[rank]) <= highs[rank] - lows[rank] + 2 * MARGIN, axis=1)]
-            for rank in range(ranks.count)
+            for rank in _near(lmp, places, lows, highs)
             if rank != ranks.rank
         }
         questions = [(rank, tags[k].astype(float)) for rank, k in asked.items() if len(k)]
@@ -99,6 +99,18 @@ def _places(lmp: Any, x: NDArray[np.float64]) -> NDArray[np.float64]:
     low, edges = _box(lmp)
     places = np.linalg.solve(edges, (x - low).T).T
     return np.where(_periodic(lmp), places, np.clip(places, 0, 1))
+
+
+def _near(lmp: Any, places: NDArray[np.float64], lows: NDArray[np.float64], highs: NDArray[np.float64]) -> list[int]:
+    """Return the ranks whose parts can hold one of the places: those that the box round the places meets."""
+    if len(places) == 0:
+        return []
+    low, high = places.min(axis=0), places.max(axis=0)
+    whole = _periodic(lmp) & (high - low + 2 * MARGIN >= 1)
+    # of part and places, whichever begins first in the direction round the box
+    ahead = _above(lmp, np.broadcast_to(low, lows.shape), lows) <= highs - lows + 2 * MARGIN
+    behind = _above(lmp, lows, low) <= high - low + 2 * MARGIN
+    return np.flatnonzero(np.all(whole | ahead | behind, axis=1)).tolist()
 
 
 def _above(lmp: Any, places: NDArray[np.float64], low: NDArray[np.float64]) -> NDArray[np.float64]:

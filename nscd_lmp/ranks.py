@@ -29,8 +29,10 @@ class Ranks:
         self.parity = 0
         machine = world.Split_type(MPI.COMM_TYPE_SHARED)
         self.on_this_machine = machine.size
-        # MPI that waits keeps its core: with more ranks than cores those that wait let the others work.
-        self.crowded = machine.size > len(os.sched_getaffinity(0))
+        cores = {core for own in machine.allgather(os.sched_getaffinity(0)) for core in own}
+        # MPI that waits keeps its core: with more ranks than cores those that wait let the others work. All ranks must
+        # know the same: they choose their calls by it.
+        self.crowded = self.comm.allreduce(machine.size > len(cores), MPI.LOR)
         machine.Free()
 
     def sum(self, numbers: Numbers) -> None:

@@ -117,6 +117,22 @@ FILES = {
             "contacts_that_could_sleep",
         }
     },
+    "scale": {
+        "scale.csv": {"part", "grains", "solver", "friction", "sweep_ns", "outside_ns", "peak_bytes_per_grain"},
+        "scale.png": None,
+    },
+    "scale_ranks": {
+        "scale_ranks.csv": {"part", "grains", "step_strong", "step_weak", "iteration_bytes", "iteration_messages"},
+        "scale_ranks.png": None,
+    },
+    "scale_sweeps": {
+        "scale_sweeps.csv": {"part", "size", "solver", "tol", "cold", "warm", "exponent_cold"},
+        "scale_sweeps.png": None,
+    },
+    "scale_model": {
+        "scale_model.csv": {"part", "grains", "ranks", "bed", "iterations", "step_s"},
+        "scale_model.png": None,
+    },
     "ingredients": {
         "ingredients.csv": {
             "ingredient",

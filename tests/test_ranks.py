@@ -127,6 +127,25 @@ def test_value_that_is_no_number_on_one_rank_ends_all_with_one_message(answers: 
     assert "velocity or force that is not a finite number" in told[0]
 
 
+@pytest.mark.parametrize("door", DOORS)
+def test_ranks_that_may_use_different_cores_agree_on_how_to_wait(answers: Answers, tmp_path: Path, door: str) -> None:
+    """Ranks that wait in different calls would wait for ever: one here sees fewer cores than there are ranks."""
+    beds = tmp_path
+    ranks_beds.make(beds)
+    program = [sys.executable, str(TESTS / "ranks_scene.py"), f"moreau_{door}", str(beds), str(beds)]
+    pin = "import os, sys; os.sched_setaffinity(0, [min(os.sched_getaffinity(0))]); os.execv(sys.argv[1], sys.argv[1:])"
+    pinned = [sys.executable, "-c", pin, *program]
+    environment = {name: value for name, value in MPI_ON_ONE_HOST.items() if name != "MPIR_CVAR_NOLOCAL"}
+    done = subprocess.run(
+        [Path(sys.prefix) / "bin" / "mpiexec", "-n", "1", *pinned, ":", "-n", "2", *program],
+        env=os.environ | environment | {"PYTHONPATH": str(TESTS)}, stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=SECONDS, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout[-3000:]
+    together = np.load(beds / f"moreau_{door}.3.npz")
+    np.testing.assert_allclose(together["v"], answers(1, f"moreau_{door}")["v"], rtol=0, atol=TOLERANCES["moreau"])
+
+
 @pytest.mark.parametrize("ranks", [2, 3])
 def test_exception_in_a_python_solver_on_one_rank_ends_all(answers: Answers, ranks: int) -> None:
     told = answers(ranks, "flawed_solver")["told"]

@@ -9,7 +9,7 @@ namespace nscd {
 double report_column(const StepReport &r, int column)
 {
   switch (column) {
-    case 0: return r.contacts;
+    case 0: return double(r.contacts);
     case 1: return r.iterations;
     case 2: return r.criterion.total();
     case 3: return r.criterion.motion;

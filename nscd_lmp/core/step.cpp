@@ -217,7 +217,7 @@ void Step::solve()
     first = state_.contacts.size();
     again = true;
   } while (promote());
-  report_.contacts = int(sum_everywhere(state_, double(state_.contacts.size())));
+  report_.contacts = std::int64_t(sum_everywhere(state_, double(state_.contacts.size())));
   report_.energy_limited += energy_limited_;
   judge();
 }

@@ -10,6 +10,7 @@
 #include "team.hpp"
 #include "warm_start.hpp"
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
@@ -18,7 +19,7 @@ namespace nscd {
 
 // What a step reports; the columns of the stats table and of fix nscd's vector.
 struct StepReport {
-  int contacts = 0;
+  std::int64_t contacts = 0;
   int iterations = 0;
   Criterion criterion;
   double largest_overlap = 0;        // m, at q_{k+1}

@@ -11,21 +11,30 @@ namespace {
 constexpr int parcel_tag = 0;
 constexpr int letter_tags[] = {1, 2};   // in turn: a rank may be one delivery ahead of another, not two
 
-int count_on_this_machine(MPI_Comm comm)
+struct Machine {
+  int ranks, cores;   // cores that any of the ranks may use
+};
+
+Machine look_at_machine(MPI_Comm world)
 {
-  MPI_Comm machine;
-  MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
-  int ranks = 0;
-  MPI_Comm_size(machine, &ranks);
-  MPI_Comm_free(&machine);
-  return ranks;
+  MPI_Comm comm;
+  MPI_Comm_split_type(world, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &comm);
+  Machine machine{};
+  MPI_Comm_size(comm, &machine.ranks);
+  cpu_set_t cores;
+  if (sched_getaffinity(0, sizeof cores, &cores) != 0) CPU_ZERO(&cores);
+  MPI_Allreduce(MPI_IN_PLACE, &cores, int(sizeof cores), MPI_BYTE, MPI_BOR, comm);
+  machine.cores = CPU_COUNT(&cores);
+  MPI_Comm_free(&comm);
+  return machine;
 }
 
-// MPI that waits keeps its core.
-bool are_crowded(int ranks)
+// MPI that waits keeps its core. All ranks must know the same: they choose their calls by it.
+bool are_crowded(const Machine &machine, MPI_Comm comm)
 {
-  cpu_set_t cores;
-  return sched_getaffinity(0, sizeof cores, &cores) == 0 && ranks > CPU_COUNT(&cores);
+  int crowded = machine.cores > 0 && machine.ranks > machine.cores;
+  MPI_Allreduce(MPI_IN_PLACE, &crowded, 1, MPI_INT, MPI_MAX, comm);
+  return crowded;
 }
 
 }    // namespace
@@ -35,8 +44,9 @@ MpiRanks::MpiRanks(MPI_Comm world)
   MPI_Comm_dup(world, &comm_);
   MPI_Comm_rank(comm_, &rank_);
   MPI_Comm_size(comm_, &count_);
-  on_this_machine_ = count_on_this_machine(comm_);
-  crowded_ = are_crowded(on_this_machine_);
+  const Machine machine = look_at_machine(comm_);
+  on_this_machine_ = machine.ranks;
+  crowded_ = are_crowded(machine, comm_);
 }
 
 MpiRanks::~MpiRanks()

@@ -30,7 +30,7 @@ class MpiRanks final : public Ranks {
   MPI_Comm comm_;
   int rank_, count_, on_this_machine_;
   int letters_tag_ = 0;
-  bool crowded_;   // more ranks on this machine than cores: those that wait must let the others work
+  bool crowded_;   // on some machine more ranks than cores: those that wait must let the others work
   std::vector<MPI_Request> requests_;
 };
 
