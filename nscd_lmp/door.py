@@ -54,6 +54,7 @@ def attach(
     e_t: float = 0.0,
     tol: float | None = None,
     criterion: Literal["paper", "natural"] | None = None,
+    overlap: float | None = None,
     maxiter: int = 1000,
     warmstart: bool | None = None,
     paper: bool = False,
@@ -79,8 +80,9 @@ def attach(
     group : str
         Atoms to move; the others are obstacles of infinite mass.
     solver : str or callable, optional
-        None: ``"auto"``. A name of :data:`nscd_lmp.SOLVERS`, or a function that takes a :class:`ContactSystem` and returns the
-        impulses (N s), a float64 array of shape (n,), with friction (n, 2) in a planar scene and (n, 3) in space.
+        None: ``"auto"``. A name of :data:`nscd_lmp.SOLVERS`, or a function that takes a :class:`ContactSystem` and
+        returns the impulses (N s), a float64 array of shape (n,), with friction (n, 2) in a planar scene and (n, 3) in
+        space.
     law : str, optional
         A name of :data:`nscd_lmp.LAWS`. None: ``"gap"``.
     restitution : float
@@ -91,12 +93,15 @@ def attach(
     e_t : float
         Tangential restitution, 0 to 1.
     tol : float, optional
-        A step is solved when the criterion is below it. None: 1e-4 with
-        ``"natural"``, 5e-4 if there is friction; 1e-7 m/s with ``"paper"``.
+        A step is solved when the criterion is below it. None: 1e-3 with
+        ``"natural"``, 1e-7 m/s with ``"paper"``.
     criterion : str, optional
         ``"natural"``: the natural map of all contacts over the norm of their velocities without impulses, as in
         :func:`nscd_lmp.solve`. ``"paper"``: (42) of Barboteu & Dumont (2017), in m/s, the mean over the contacts.
         None: ``"paper"`` if `tol` is given, otherwise ``"natural"``.
+    overlap : float, optional
+        Of ``law gap``: a step is solved only when no contact is driven deeper than this share of the smallest radius.
+        None: 5e-4 if `tol` is None and the criterion ``"natural"``, otherwise no such condition.
     maxiter : int
         Iterations after which a step is given up; see `unconverged`.
     warmstart : bool, optional
@@ -138,10 +143,9 @@ def attach(
         the positions and velocities are then those at the end of the last good step.
     """
     keywords = _keywords(
-        paper=paper or None, law=law, restitution=restitution, friction=friction, e_t=e_t or None, tol=tol, criterion=criterion,
-        maxiter=maxiter, warmstart=warmstart, rho=rho, gamma=gamma, theta=theta, recovery=recovery,
-        unconverged=unconverged, inertia=inertia,
-        threads=threads,
+        paper=paper or None, law=law, restitution=restitution, friction=friction, e_t=e_t or None, tol=tol,
+        criterion=criterion, overlap=overlap, maxiter=maxiter, warmstart=warmstart, rho=rho, gamma=gamma, theta=theta,
+        recovery=recovery, unconverged=unconverged, inertia=inertia, threads=threads,
     )  # fmt: skip
     custom = None
     if callable(solver):

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 from mpi4py import MPI
-from rich.console import Console
 
 from nscd_lmp._core import NscdError
 from nscd_lmp.sweeps.cases import OWN_COLUMNS, Case, make_cases
@@ -21,7 +20,6 @@ from nscd_lmp.sweeps.pool import run_cases
 from nscd_lmp.sweeps.record import CASE, claimed, finished, write_json
 from nscd_lmp.sweeps.script import ScriptTask
 from nscd_lmp.sweeps.table import Row, SweepTable
-from nscd_lmp.sweeps.watch import Watch
 
 Result = dict[str, Any]
 
@@ -98,8 +96,7 @@ def sweep(
     task.check(made, home)
     with claimed(home, task.name, fixed):
         going = _Sweep(task, made, home, ranks)
-        watching = Console(stderr=True, quiet=not progress, highlight=False)
-        return going.run(processes, timeout, retry, watching)
+        return going.run(processes, timeout, retry, progress)
 
 
 class _Sweep:
@@ -113,14 +110,16 @@ class _Sweep:
         self.mpiexec = _mpiexec(ranks)
         self.found: dict[Path, Result] = {}
 
-    def run(self, processes: int, timeout: float | None, retry: bool, console: Console) -> SweepTable:
+    def run(self, processes: int, timeout: float | None, retry: bool, progress: bool) -> SweepTable:
         """Run what is not there, and write the table however that ends."""
         for folder, case in self.cases.items():
             result = finished(folder, self.key(case), retry=retry, timeout=timeout)
             if result is not None:
                 self.found[folder] = result
         missing = [folder for folder in self.cases if folder not in self.found]
-        watch = Watch(console, len(self.cases), [self.row(folder) for folder in self.found])
+        from nscd_lmp.sweeps.watch import Watch  # brings rich, which import nscd_lmp does without
+
+        watch = Watch(len(self.cases), [self.row(folder) for folder in self.found], quiet=not progress)
 
         def ended(folder: Path, result: Result) -> None:
             self.found[folder] = result

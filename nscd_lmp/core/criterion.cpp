@@ -27,6 +27,7 @@ struct Sums {
   {
     of.bipotential += w * std::max(0.0, -p);
     of.penetration += std::max(-v, 0.0);  // this order of arguments lets NaN through
+    of.approach = std::max(of.approach, -v);
     // w (p - max(0, p - v / w)) without cancellation, and v if that is no number.
     const double residual = w * p < v ? w * p : v;
     natural += residual * residual;
@@ -67,10 +68,11 @@ struct Sums {
     of.motion += other.of.motion;
     of.bipotential += other.of.bipotential;
     of.penetration += other.of.penetration;
+    of.approach = std::max(of.approach, other.of.approach);
     natural += other.natural;
   }
 
-  Criterion mean(std::size_t contacts, double restitution, double free_norm)
+  Criterion mean(std::size_t contacts, double restitution, double free_norm, double round_off = 0)
   {
     if (contacts == 0) return of;
     const double scale = 1 / (double(contacts) * (1 + restitution));
@@ -78,7 +80,8 @@ struct Sums {
     of.bipotential *= scale;
     of.penetration *= scale;
     // If nothing drives the contacts, what start impulses have left over is all there is: 1.
-    if (natural != 0) of.relative = free_norm > 0 ? std::sqrt(natural) / free_norm : 1;
+    const bool residual = !(natural <= double(contacts) * round_off * round_off);  // NaN is one
+    if (residual) of.relative = free_norm > 0 ? std::sqrt(natural) / free_norm : 1;
     return of;
   }
 };
@@ -173,8 +176,10 @@ Criterion measure(const Problem &problem, const double *local_velocity)
   double sums[] = {sum.of.motion, sum.of.bipotential, sum.of.penetration, sum.natural,
                    double(problem.contacts.size())};
   if (problem.halo) problem.halo->sum(sums);
-  sum = {{sums[0], sums[1], sums[2], 0}, sums[3]};
-  return sum.mean(std::size_t(sums[4]), problem.restitution, problem.free_norm);
+  double approach = sum.of.approach;
+  if (problem.halo && problem.approach_matters) problem.halo->max({&approach, 1});
+  sum = {{sums[0], sums[1], sums[2], 0, approach}, sums[3]};
+  return sum.mean(std::size_t(sums[4]), problem.restitution, problem.free_norm, problem.round_off);
 }
 
 Criterion measure(const GlobalProblem &problem, const double *u, const double *local_velocity)

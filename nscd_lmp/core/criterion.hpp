@@ -27,6 +27,7 @@ struct Criterion {
   double bipotential = 0;
   double penetration = 0;
   double relative = 0;
+  double approach = 0;  // m/s, the fastest of the contacts, biases included
   double total() const { return motion + bipotential + penetration; }
 };
 

@@ -42,6 +42,7 @@ NSCD_INLINE void load_body(State &s, int i, const Search &search, Largest &large
   const double before2 = dot(before, before), free2 = dot(free, free), speed2 = std::max(before2, free2);
   largest.kick2 = std::max(largest.kick2, dot(kick, kick));
   largest.speed2 = std::max(largest.speed2, speed2);
+  largest.smallest_radius = std::min(largest.smallest_radius, g.radius[i]);
   s.spheres[i] = {centre, g.radius[i], s.dt * search.look_ahead * std::sqrt(speed2)};
   s.bodies[i] = free + Vec4{0, 0, 0, inverse_mass};
   // One test for all that is wrong: a not-a-number fails every comparison.

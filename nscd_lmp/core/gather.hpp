@@ -3,11 +3,14 @@
 
 #include "state.hpp"
 
+#include <cmath>
+
 namespace nscd {
 
 // Squares of speeds, (m/s)^2: what the smooth forces change, and before or after them.
 struct Largest {
   double kick2 = 0, speed2 = 0;
+  double smallest_radius = INFINITY;
 };
 
 // Bodies and spheres of the owned atoms: free velocities, predicted positions. Contacts are sought at q_k + prediction

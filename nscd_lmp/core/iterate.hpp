@@ -29,6 +29,26 @@ inline double surely_above(const Extent &extent, const SolverOptions &options)
   return 4 * options.tol * (options.stop == Stop::paper ? n : std::sqrt(n) * extent.free_norm);
 }
 
+// Sweeps that threw impulses about before they came down again: the round-off of what they corrected stays in the
+// velocities, where the criterion does not see it.
+class RunAway {
+ public:
+  // `above`: as surely_above has it.
+  explicit RunAway(double above) : above_(above) {}
+
+  void look(double corrected)
+  {
+    if (most_ == 0) first_ = corrected;
+    most_ = std::max(most_, corrected);
+  }
+  bool has_happened() const { return most_ > 1e12 * first_ && most_ * round_off > above_; }
+
+ private:
+  static constexpr double round_off = 1e-15;
+  const double above_;
+  double first_ = 0, most_ = 0;
+};
+
 // Whether sweeps are worth going on with, by what they correct: it falls about geometrically, with ripples under
 // momentum, so the least of the sweeps from s/2 to s is held against the least of those from s/4 to s/2, s = first, 2
 // first, ...
@@ -73,18 +93,21 @@ SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep o
   if (extent.contacts == 0) return report;
   const double above = surely_above(extent, options);
   Outlook outlook(options.alternative, above / 4);
+  RunAway run_away(above);
   int next_check = 0;
   report.converged = false;
   for (int s = 1; s <= options.maxiter && !report.converged; ++s) {
     const double corrected = once();
+    run_away.look(corrected);
     report.iterations = s;
     const bool last = s == options.maxiter || outlook.is_worse_than_alternative(corrected);
     const bool close = !(corrected > above) && s >= next_check;
     if (s > always_checked && !close && !last) continue;
     report.criterion = look();
     report.converged = solved(report.criterion, options);
+    report.ran_away = run_away.has_happened();
     if (options.history) options.history->push_back(report);
-    if (last) break;
+    if (last || report.ran_away) break;
     next_check = s + 1 + s / 64;
   }
   return report;

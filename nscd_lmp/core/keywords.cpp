@@ -99,6 +99,7 @@ const std::map<std::string, Reader> &readers()
       {"warmstart", [](Settings &s, Words &w) { s.warmstart = w.yes_or_no(); }},
       {"rho", [](Settings &s, Words &w) { s.rho = w.number<double>(); }},
       {"gamma", [](Settings &s, Words &w) { s.gamma = w.number<double>(); }},
+      {"overlap", [](Settings &s, Words &w) { s.overlap = w.number<double>(); }},
       {"paper", [](Settings &s, Words &w) { if (w.yes_or_no()) follow_paper(s); }},
       {"theta", [](Settings &s, Words &w) { s.theta = w.number<double>(); }},
       {"recovery", [](Settings &s, Words &w) { s.recovery = w.number<double>(); }},

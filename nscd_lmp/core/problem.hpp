@@ -30,6 +30,8 @@ struct Problem {
   Halo *halo = nullptr;         // bodies that contacts of other ranks touch too; none on one rank
   Team *team = nullptr;         // threads; none: the caller's alone
   const Parts *parts = nullptr;   // in which the contacts are ordered, for the team
+  double round_off = 0;         // m/s: a residual of less a contact is none
+  bool approach_matters = false;   // whether the criterion has to know that of other ranks
 };
 
 }    // namespace nscd

@@ -10,9 +10,9 @@
 
 namespace nscd {
 
-// Of the velocities that the step would have without contacts: leaves overlaps below 0.1 % of the radius, and is met in
-// every step of a bed that settles (docs/benchmarks.md).
-constexpr double tol_of_scene = 1e-4, tol_of_scene_with_friction = 5e-4;
+// Of the velocities that the step would have without contacts, and of the smallest radius: together they leave overlaps
+// below 0.1 % of the radius at any size of a bed and any step, for the fewest iterations (docs/benchmarks.md).
+constexpr double tol_of_scene = 1e-3, overlap_of_scene = 5e-4;
 constexpr double tol_of_paper = 1e-7;   // m/s
 
 Unconverged parse_unconverged(const std::string &word)
@@ -126,10 +126,20 @@ void follow_paper(Settings &s)
 static void choose_tolerance(Settings &s)
 {
   if (!s.criterion) s.criterion = s.tol ? Stop::paper : Stop::natural;
-  const double of_scene = s.frictional() ? tol_of_scene_with_friction : tol_of_scene;
-  if (!s.tol) s.tol = *s.criterion == Stop::paper ? tol_of_paper : of_scene;
+  const bool of_scene = !s.tol && *s.criterion == Stop::natural;
+  if (of_scene && !s.overlap && find_law(s.law).make()->looks_ahead()) s.overlap = overlap_of_scene;
+  if (!s.tol) s.tol = of_scene ? tol_of_scene : tol_of_paper;
   if (!(*s.tol > 0 && std::isfinite(*s.tol)))
     fail("tol = ", *s.tol, " must be > 0: it is the value of the criterion at which a step is solved");
+}
+
+static void check_overlap(const Settings &s)
+{
+  if (!s.overlap) return;
+  if (!(*s.overlap > 0 && *s.overlap <= 1))
+    fail("overlap = ", *s.overlap, " is outside (0, 1]: it is a share of the smallest radius");
+  if (!find_law(s.law).make()->looks_ahead())
+    fail("overlap is a condition of law gap: law ", s.law, " sees contacts only once they overlap");
 }
 
 Settings checked(Settings s, int dimension)
@@ -141,6 +151,7 @@ Settings checked(Settings s, int dimension)
   require_range("theta", s.theta, 0, 1);
   require_range("recovery", s.recovery, 0, 1);
   choose_tolerance(s);
+  check_overlap(s);
   if (s.maxiter < 1) fail("maxiter = ", s.maxiter, " must be at least 1");
   if (s.frictional() && !solver.friction)
     fail("solver ", solver.name, " is for contacts without friction: choose another, or leave friction out");

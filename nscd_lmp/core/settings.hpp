@@ -39,6 +39,7 @@ struct Settings {
   // On the criterion. Without both: natural, relative to the scene's own velocities; with tol alone: paper, in m/s.
   std::optional<double> tol;
   std::optional<Stop> criterion;
+  std::optional<double> overlap;   // of the smallest radius: what a contact may be driven into another in a step
   int maxiter = 1000;
   bool warmstart = true;
   std::optional<double> rho;     // multiple of 1/W_nn; none: the solver's own default
@@ -67,7 +68,7 @@ double solver_parameter(const Settings &settings, const SolverEntry &solver);
 void follow_paper(Settings &settings);
 
 // Raises Error (value, limit, remedy) for anything out of range or that does not fit the dimension; normalises the
-// walls' normals, and fills in tol and criterion.
+// walls' normals, and fills in tol, criterion and overlap.
 Settings checked(Settings settings, int dimension = 3);
 
 }    // namespace nscd

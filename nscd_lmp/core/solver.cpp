@@ -31,7 +31,7 @@ double judged(const Criterion &criterion, const SolverOptions &options)
 
 bool solved(const Criterion &criterion, const SolverOptions &options)
 {
-  return judged(criterion, options) < options.tol;
+  return judged(criterion, options) < options.tol && !(criterion.approach > options.approach);
 }
 
 }    // namespace nscd

@@ -8,6 +8,7 @@
 #include "criterion.hpp"
 #include "global_problem.hpp"
 
+#include <cmath>
 #include <string_view>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct SolverReport {
   int iterations = 0;
   bool converged = true;
   bool at_round_off = false;  // no solver gets further
+  bool ran_away = false;      // velocities are not those of the impulses any more
   Criterion criterion;
 };
 
@@ -28,6 +30,7 @@ struct SolverOptions {
   int maxiter = 1000;
   double parameter = 1;  // rho or gamma as a multiple of 1/W_nn
   Stop stop = Stop::paper;
+  double approach = INFINITY;  // m/s: none of the contacts of a solved problem approaches faster
   double alternative = 0;  // sweeps that another solver would cost: give up if more seem to be needed; 0: never
   std::vector<SolverReport> *history = nullptr;  // gets a row whenever the criterion is measured, if given
 };

@@ -83,6 +83,7 @@ struct State {
 
   double watch = 0;                    // surface distance within which pairs are watched, m
   double smooth_kick = 0;              // largest |dt f / m| of the step, m/s
+  double round_off = 0;                // of velocities, m/s
   double tolerance = 0;                // what a solved step leaves of velocities in error, m/s
 
   // Bodies that are grains, of this rank or copies of others'.

@@ -74,8 +74,8 @@ static double velocity_scale(double smooth_kick, double speed) { return std::max
 void Step::prepare(const PairList &pairs)
 {
   Largest largest;
-  double reduced[4];
-  auto &[kick2, speed2, moved, unlisted] = reduced;
+  double reduced[5];
+  auto &[kick2, speed2, moved, unlisted, smallest] = reduced;
   together([&] {
     if (state_.dimension == 2) require_planar(state_);
     list_.inspect(state_, pairs);
@@ -87,6 +87,7 @@ void Step::prepare(const PairList &pairs)
   }
   together([&] { largest = gather_owned(state_, prediction_, look_ahead_); });
   kick2 = largest.kick2, speed2 = largest.speed2, moved = list_.farthest_moved(state_), unlisted = -pairs.reach;
+  smallest = -largest.smallest_radius;
   if (halo_) {
     halo_->share_motion(state_);
     halo_->max(reduced);
@@ -94,6 +95,8 @@ void Step::prepare(const PairList &pairs)
   gather_images(state_, prediction_, look_ahead_, {kick2, speed2});
   listed_ = -unlisted;
   const double speed = std::sqrt(speed2);
+  state_.round_off = 1e-14 * speed;
+  if (settings_.overlap) options_.approach = *settings_.overlap * -smallest / state_.dt;
   state_.tolerance = options_.tol;
   if (options_.stop == Stop::natural) state_.tolerance *= velocity_scale(state_.smooth_kick, speed);
   require_reach({listed_, moved, longest_move(speed)}, speed);
@@ -169,6 +172,8 @@ bool Step::solve_part(const Part &part)
   const std::span contacts = std::span(state_.contacts).first(part.contacts);
   Problem problem{state_.bodies, contacts, part.e, part.norm, workspace_, sliding(state_, part.e_t),
                   halo_.get()};
+  problem.round_off = state_.round_off;
+  problem.approach_matters = settings_.overlap.has_value();
   if (shared_among_threads_) {
     problem.team = team_.get();
     problem.parts = &state_.slabs.parts();
@@ -178,6 +183,9 @@ bool Step::solve_part(const Part &part)
   if (!std::isfinite(solved.criterion.total()))
     fail("solver ", settings_.solver,
          " diverged: the criterion is not a number; take another solver, or rho or gamma closer to its default");
+  if (solved.ran_away)
+    fail("solver ", settings_.solver, " diverged: impulses ran away, and what they rounded off is in the velocities; take "
+         "another solver, or rho or gamma closer to its default");
   report_.iterations += solved.iterations;
   // The criterion of the last solve, or of the one that failed.
   if (report_.converged || !solved.converged) report_.criterion = solved.criterion;
@@ -253,6 +261,11 @@ void Step::resolve_impacts_first(bool again)
 void Step::judge()
 {
   if (report_.converged) return;
+  const bool too_deep = solved(report_.criterion, {.tol = options_.tol, .stop = options_.stop});
+  if (settings_.unconverged == Unconverged::error && too_deep)
+    fail("step not solved: a contact approaches at ", report_.criterion.approach, " after ", report_.iterations,
+         " iterations, overlap ", *settings_.overlap, " allows ", options_.approach,
+         ": raise maxiter or overlap, or use `unconverged warn`");
   if (settings_.unconverged == Unconverged::error)
     fail("step not solved: criterion ", options_.stop == Stop::paper ? "(42)" : "natural", " is ",
          judged(report_.criterion, options_), " after ", report_.iterations,

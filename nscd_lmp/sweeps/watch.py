@@ -16,8 +16,8 @@ from nscd_lmp.sweeps.table import Row
 class Watch:
     """Shows the cases that end; on standard error, so that output stays the caller's."""
 
-    def __init__(self, console: Console, cases: int, earlier: Sequence[Row]) -> None:
-        self.console = console
+    def __init__(self, cases: int, earlier: Sequence[Row], *, quiet: bool) -> None:
+        self.console = console = Console(stderr=True, quiet=quiet, highlight=False)
         self.cases = cases
         self.done = self.before = len(earlier)
         self.failed = sum(row["status"] != OK for row in earlier)

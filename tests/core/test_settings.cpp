@@ -22,8 +22,8 @@ TEST(no_keywords_leave_the_defaults)
 {
   const nscd::Settings s = checked("");
   CHECK(s.solver == "auto" && s.law == "gap" && s.restitution == 0 && s.maxiter == 1000);
-  CHECK(checked("friction 0.3").tol == 5e-4);
-  CHECK(s.tol == 1e-4 && s.criterion == nscd::Stop::natural && s.threads == 1);
+  CHECK(s.overlap == 5e-4 && !checked("law moreau").overlap && !checked("tol 1e-3").overlap);
+  CHECK(s.tol == 1e-3 && s.criterion == nscd::Stop::natural && s.threads == 1);
   CHECK(s.warmstart && s.unconverged == nscd::Unconverged::warn && s.walls.empty());
   CHECK(!s.rho && !s.gamma);
 }
@@ -57,7 +57,7 @@ TEST(the_default_tolerance_follows_the_scene)
     scene.accelerate({0, 0, -10 * scale});
     scene.advance(step, 1e-3);
     CHECK(step.report().converged);
-    CHECK_NEAR(step.state().tolerance, 1e-4 * 10 * scale * 1e-3, 1e-12 * scale);
+    CHECK_NEAR(step.state().tolerance, 1e-3 * 10 * scale * 1e-3, 1e-12 * scale);
     iterations[large] = step.report().iterations;
   }
   CHECK(iterations[0] == iterations[1] && iterations[0] > 10);
@@ -211,7 +211,7 @@ TEST(the_description_names_what_was_chosen)
 {
   const std::string words = "solver sal law moreau restitution 0.5 rho 0.3 wall plane 0 0 0 0 0 1";
   const std::string text = nscd::describe(nscd::Step(checked(words)));
-  for (const char *part : {"moreau", "SAL", "rho = 0.3/W_nn", "1 wall", "restitution 0.5", "tol 0.0001 (natural map)"})
+  for (const char *part : {"moreau", "SAL", "rho = 0.3/W_nn", "1 wall", "restitution 0.5", "tol 0.001 (natural map)"})
     check::says(__FILE__, __LINE__, text, part);
 }
 

@@ -88,6 +88,7 @@ class Relay {
     report_.criterion = done.criterion;
     report_.converged = done.converged;
     report_.at_round_off = done.at_round_off;
+    report_.ran_away |= done.ran_away;
     left_.maxiter -= done.iterations;
   }
 

@@ -1,0 +1,1 @@
+"""One map, one module, found by itself: what it has to define is :class:`nscd_lmp.atlas.atlas.Map`."""

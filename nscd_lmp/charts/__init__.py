@@ -1,0 +1,1 @@
+"""Work-precision charts: seconds per simulated second against physical errors."""
