@@ -46,7 +46,8 @@ def settled(dim: int, n: int) -> Grains:
     box = [sides, height if dim == 2 else sides, height]
     lmp = scenes.start(balls, 1e-2, gravity=GRAVITY, vmax=20.0, planar=dim == 2, box=box)
     # in haste: NLGS is slow on beds between rough walls
-    harden(lmp, law="gap", tol=1e-6, maxiter=100, friction=PAIRS, walls=walls(dim), unconverged="ignore")
+    options = {"solver": "pdas", "law": "gap", "tol": 1e-6, "maxiter": 100, "unconverged": "ignore"}
+    harden(lmp, friction=PAIRS, walls=walls(dim), **options)
     lmp.command("run 500 post no")
     balls.x, balls.v = state(lmp)
     balls.omega = per_atom(lmp, "omega")

@@ -56,7 +56,7 @@ def bed():
 
     balls = cloud(80, (0.25, 0.5), WIDTH, seed=3)
     lmp = scenes.start(balls, 1e-2, gravity=GRAVITY, box=[(-1, 6), (-1, 6), (-1, 12)], vmax=20.0)
-    harden(lmp, law="gap", tol=1e-9, maxiter=20000, walls=box_walls(WIDTH), unconverged="ignore")
+    harden(lmp, solver="pdas", law="gap", tol=1e-9, maxiter=20000, walls=box_walls(WIDTH), unconverged="ignore")
     lmp.command("run 300")
     balls.x, _ = state(lmp)
     lmp.close()
