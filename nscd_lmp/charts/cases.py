@@ -20,6 +20,12 @@ def rigid_cases(methods: Iterable[str], dts: Sequence[float], tols: Sequence[flo
     return [{"method": method, "tol": tol, "dt": dt, **scene} for method, tol, dt in product]
 
 
+def overlap_cases(methods: Iterable[str], dts: Sequence[float], overlaps: Sequence[float], **scene: Any) -> list[Case]:
+    """Return a case for each method, time step (s) and bound on what a step may drive a contact into another."""
+    product = itertools.product(methods, overlaps, dts)
+    return [{"method": method, "overlap": overlap, "dt": dt, **scene} for method, overlap, dt in product]
+
+
 def penalty_cases(
     methods: Iterable[str],
     stiffnesses: Sequence[float],

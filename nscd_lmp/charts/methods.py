@@ -134,8 +134,9 @@ def start(
     method : Method or str
         Or its name in :data:`METHODS`.
     case : mapping
-        ``dt`` (s); ``tol`` (m/s) of a rigid method; ``stiffness`` (N/m) of a penalty method, for hertz that of the
-        spring which an impact of two mean grains at `speed` compresses as far (:func:`penalty.hertz_stiffness`).
+        ``dt`` (s); ``tol`` (m/s), or ``overlap`` with the default tolerance, of a rigid method; ``stiffness`` (N/m)
+        of a penalty method, for hertz that of the spring which an impact of two mean grains at `speed` compresses as
+        far (:func:`penalty.hertz_stiffness`).
     walls : sequence of Plane
     restitution : float
         Newton's e, 0 to 1. Penalty contacts are damped for it, without attraction; they cannot have less than 0.13.
@@ -189,7 +190,8 @@ def _rigid_commands(
     e_t: float | None,
     options: str,
 ) -> list[str]:
-    words = [f"law {method.law} solver {method.solver} restitution {restitution!r} tol {case['tol']!r}"]
+    solved = f"tol {case['tol']!r}" if "tol" in case else f"overlap {case['overlap']!r}"
+    words = [f"law {method.law} solver {method.solver} restitution {restitution!r} {solved}"]
     if friction:
         words.append(f"friction {friction}")
     if e_t:

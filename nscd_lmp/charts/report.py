@@ -56,7 +56,7 @@ def _words(row: Row | None) -> str:
     """Return a run in words."""
     if row is None:
         return "none"
-    given = [f"{name} {row[name]:g}" for name in ("tol", "stiffness", "dt") if row.get(name) is not None]
+    given = [f"{name} {row[name]:g}" for name in ("tol", "overlap", "stiffness", "dt") if row.get(name) is not None]
     return f"{row['method']}, {', '.join(given)}"
 
 

@@ -54,7 +54,7 @@ def make_series(rows: Sequence[Row], errors: Sequence[str], floor: float) -> lis
 
 def _table(rows: Sequence[Row], method: str) -> dict[Any, Row]:
     """Return the rows of a method by what was varied."""
-    others = ("dt", "tol", "stiffness", "grains")
+    others = ("dt", "tol", "overlap", "stiffness", "grains")
     return {tuple(row.get(name) for name in others): row for row in rows if row["method"] == method}
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from nscd_lmp.charts.cases import penalty_cases, rigid_cases
+from nscd_lmp.charts.cases import overlap_cases, penalty_cases, rigid_cases
 from nscd_lmp.charts.methods import penalty_methods, rigid_methods
 from nscd_lmp.charts.sedimentations import ERRORS, LIGHTEST, Sedimentation, run_case
 from nscd_lmp.charts.size import Size
@@ -23,6 +23,7 @@ against the same reference; two references differ by 0.3 %, root mean square. Pe
 RUN = Sedimentation(grains=500, simulated=0.05, window=0.01, fine=(2e-5, 1e-10))
 QUICK = Sedimentation(grains=60, simulated=0.01, window=0.005, fine=(1e-4, 1e-9), repeats=1)
 
+OVERLAPS = (5e-3, 1e-3, 5e-4)  # of the smallest radius, a step
 STEPS = (2e-4, 5e-4, 1e-3, 2e-3)  # s
 TOLERANCES = (1e-5, 1e-6, 1e-7)  # m/s
 BETWEEN = (3e-6,)  # near overlaps of 1 %
@@ -45,6 +46,7 @@ def cases(size: Size) -> list[dict[str, Any]]:
     # rigid and penalty in turns, so that a busy hour hits both
     return [
         *rigid_cases(["gap/apgs"], STEPS, TOLERANCES + BETWEEN, grains=500),
+        *overlap_cases(["gap/apgs"], STEPS[1:], OVERLAPS, grains=500),
         *penalty_cases(soft[:1], STIFFNESSES, LIGHTEST, PARTS, grains=500),
         *rigid_cases([f"gap/{solver}" for solver in FAST[1:]], STEPS, TOLERANCES, grains=500),
         *penalty_cases(soft[:1], CAREFUL, LIGHTEST, [1 / 10], grains=500),

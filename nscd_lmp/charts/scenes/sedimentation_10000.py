@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from nscd_lmp.charts.cases import penalty_cases, rigid_cases
+from nscd_lmp.charts.cases import overlap_cases, penalty_cases, rigid_cases
 from nscd_lmp.charts.sedimentations import ERRORS as ALL_ERRORS
 from nscd_lmp.charts.sedimentations import LIGHTEST, Sedimentation, run_case
 from nscd_lmp.charts.size import Size
@@ -35,8 +35,10 @@ def cases(size: Size) -> list[dict[str, Any]]:
 
     # in turns, so that a busy hour hits both families
     return [
+        *overlap_cases(["gap/apgs"], [5e-4, 1e-3], [5e-3], grains=10_000),
         *rigid("gap/apgs", [5e-4, 1e-3], [1e-6]),
         *soft(3e3, 5e3),
+        *overlap_cases(["gap/apgs"], [5e-4, 1e-3], [1e-3, 5e-4], grains=10_000),
         *rigid("gap/apgs", [5e-4, 1e-3], [1e-7]),
         *soft(1e5),
         *rigid("gap/apgs", [5e-4, 1e-3], [3e-6, 3e-7]),

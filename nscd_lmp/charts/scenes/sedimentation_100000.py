@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from nscd_lmp.charts.cases import penalty_cases, rigid_cases
+from nscd_lmp.charts.cases import overlap_cases, penalty_cases, rigid_cases
 from nscd_lmp.charts.half_settled import HalfSettled, run_window
 from nscd_lmp.charts.sedimentations import ERRORS as ALL_ERRORS
 from nscd_lmp.charts.sedimentations import LIGHTEST
@@ -37,7 +37,13 @@ def cases(size: Size) -> list[dict[str, Any]]:
         return penalty_cases(["gran/hooke/history"], stiffnesses, LIGHTEST, [1 / 3], grains=100_000)
 
     # in turns, so that a busy hour hits both families
-    return [*rigid([1e-3], [1e-6]), *soft(3e3, 3e5), *rigid([1e-3], [1e-7]), *soft(1e4)]
+    return [
+        *overlap_cases(["gap/apgs"], [5e-4], [5e-3, 5e-4], grains=100_000),
+        *rigid([1e-3], [1e-6]),
+        *soft(3e3, 3e5),
+        *rigid([1e-3], [1e-7]),
+        *soft(1e4),
+    ]
 
 
 def run(folder: Path, **case: Any) -> dict[str, Any]:
