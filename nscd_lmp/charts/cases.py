@@ -21,7 +21,10 @@ def rigid_cases(methods: Iterable[str], dts: Sequence[float], tols: Sequence[flo
 
 
 def overlap_cases(methods: Iterable[str], dts: Sequence[float], overlaps: Sequence[float], **scene: Any) -> list[Case]:
-    """Return a case for each method, time step (s) and bound on what a step may drive a contact into another."""
+    """Return a case for each method, time step (s) and bound on what a step may drive a contact into another.
+
+    The tolerance is the default one, unless `scene` has ``tol``.
+    """
     product = itertools.product(methods, overlaps, dts)
     return [{"method": method, "overlap": overlap, "dt": dt, **scene} for method, overlap, dt in product]
 

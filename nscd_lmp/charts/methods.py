@@ -134,7 +134,7 @@ def start(
     method : Method or str
         Or its name in :data:`METHODS`.
     case : mapping
-        ``dt`` (s); ``tol`` (m/s), or ``overlap`` with the default tolerance, of a rigid method; ``stiffness`` (N/m)
+        ``dt`` (s); ``tol`` (m/s), ``overlap`` or both of a rigid method; ``stiffness`` (N/m)
         of a penalty method, for hertz that of the spring which an impact of two mean grains at `speed` compresses as
         far (:func:`penalty.hertz_stiffness`).
     walls : sequence of Plane
@@ -190,7 +190,7 @@ def _rigid_commands(
     e_t: float | None,
     options: str,
 ) -> list[str]:
-    solved = f"tol {case['tol']!r}" if "tol" in case else f"overlap {case['overlap']!r}"
+    solved = " ".join(f"{name} {case[name]!r}" for name in ("tol", "overlap") if name in case)
     words = [f"law {method.law} solver {method.solver} restitution {restitution!r} {solved}"]
     if friction:
         words.append(f"friction {friction}")

@@ -184,8 +184,8 @@ bool Step::solve_part(const Part &part)
     fail("solver ", settings_.solver,
          " diverged: the criterion is not a number; take another solver, or rho or gamma closer to its default");
   if (solved.ran_away)
-    fail("solver ", settings_.solver, " diverged: impulses ran away, and what they rounded off is in the velocities; take "
-         "another solver, or rho or gamma closer to its default");
+    fail("solver ", settings_.solver, " diverged: impulses ran away, and what they rounded off is in the velocities; "
+         "take another solver, or rho or gamma closer to its default");
   report_.iterations += solved.iterations;
   // The criterion of the last solve, or of the one that failed.
   if (report_.converged || !solved.converged) report_.criterion = solved.criterion;

@@ -45,7 +45,7 @@ TEST(the_settings_of_the_paper_are_one_keyword_away)
   CHECK(checked("paper no").solver == checked("").solver);
 }
 
-// The same scene in other units of length and time: grains a thousand times as large, and steps as long as gravity asks.
+// The same scene a thousand times as large, under a gravity a thousand times as strong.
 TEST(the_default_tolerance_follows_the_scene)
 {
   int iterations[2];

@@ -221,7 +221,8 @@ TEST(a_warm_start_saves_the_iterations_of_a_heap_with_friction)
         Scene scene;
         for (int i = 0; i < 4; ++i) scene.add({1.999 * i, 0.999, 0}, 1, 1);
         for (int i = 0; i < 3; ++i) scene.add({1.999 * i + 1, 2.729, 0}, 1, 1);
-        nscd::Step step(settings(std::string("solver pdas tol 1e-7 friction 0.6 wall plane 0 0 0 0 1 0 law ") + law + " warmstart " +
+        nscd::Step step(settings(std::string("solver pdas tol 1e-7 friction 0.6 wall plane 0 0 0 0 1 0 law ") + law +
+                                 " warmstart " +
                                  (warm ? "yes" : "no")), {}, dimension);
         for (int k = 0; k < 5; ++k) {
           scene.accelerate({0, -10, 0});

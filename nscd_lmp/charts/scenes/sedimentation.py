@@ -47,6 +47,7 @@ def cases(size: Size) -> list[dict[str, Any]]:
     return [
         *rigid_cases(["gap/apgs"], STEPS, TOLERANCES + BETWEEN, grains=500),
         *overlap_cases(["gap/apgs"], STEPS[1:], OVERLAPS, grains=500),
+        *overlap_cases(["gap/apgs"], STEPS[1:], OVERLAPS, grains=500, tol=1e-5),
         *penalty_cases(soft[:1], STIFFNESSES, LIGHTEST, PARTS, grains=500),
         *rigid_cases([f"gap/{solver}" for solver in FAST[1:]], STEPS, TOLERANCES, grains=500),
         *penalty_cases(soft[:1], CAREFUL, LIGHTEST, [1 / 10], grains=500),

@@ -39,6 +39,7 @@ def cases(size: Size) -> list[dict[str, Any]]:
         *rigid("gap/apgs", [5e-4, 1e-3], [1e-6]),
         *soft(3e3, 5e3),
         *overlap_cases(["gap/apgs"], [5e-4, 1e-3], [1e-3, 5e-4], grains=10_000),
+        *overlap_cases(["gap/apgs"], [5e-4, 1e-3], [5e-3, 5e-4], grains=10_000, tol=1e-5),
         *rigid("gap/apgs", [5e-4, 1e-3], [1e-7]),
         *soft(1e5),
         *rigid("gap/apgs", [5e-4, 1e-3], [3e-6, 3e-7]),
