@@ -14,6 +14,7 @@ namespace nscd {
 struct Workspace {
   std::vector<double> numbers{};
   AlignedVector<Vec4> vectors{};
+  std::vector<char> marks{};   // of bodies
 };
 
 class Halo;

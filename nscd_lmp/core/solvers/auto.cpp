@@ -20,10 +20,11 @@ namespace {
 
 std::size_t touching_bodies(const Problem &problem)
 {
-  std::vector<bool> touches(problem.bodies.size());
+  std::vector<char> &touches = problem.workspace.marks;
+  touches.assign(problem.bodies.size(), 0);
   for (const Contact &c : problem.contacts)
     for (const int b : {c.i, c.j}) touches[b] = problem.bodies[b][3] > 0;
-  return std::size_t(std::count(touches.begin(), touches.end(), true));
+  return std::size_t(std::count(touches.begin(), touches.end(), 1));
 }
 
 // Whether the graph of the contacts is one without loops, or nearly.
