@@ -154,7 +154,7 @@ def attach(
         keywords += ["solver", solver]
     for wall in walls:
         keywords += wall.keywords()
-    return _Door(lmp, group, keywords, custom, unconverged, door).attached
+    return _Door(lmp, group, keywords, custom, door).attached
 
 
 def _keywords(**values: Any) -> list[str]:
@@ -190,13 +190,12 @@ def _with_contact_system(solver: PythonSolver) -> Callable[[dict[str, Any]], NDA
 class _Door:
     """The step's fix on one LAMMPS instance, and the watch over the commands that run it."""
 
-    def __init__(self, lmp: Any, group: str, keywords: list[str], solver: Any, unconverged: str, door: str) -> None:
+    def __init__(self, lmp: Any, group: str, keywords: list[str], solver: Any, door: str) -> None:
         self.define = definition(lmp, door)
         ranks = Ranks(lmp.get_mpi_comm()) if lmp.extract_setting("world_size") > 1 else None
         self.inspection = Inspection(lmp, ranks)
         self.lmp = lmp
         self.group = group
-        self.warn = unconverged == "warn"
         self.remeasure = False
         if any(fix.id == FIX_ID for fix in self.inspection.fixes()):
             raise _core.NscdError(
@@ -274,13 +273,12 @@ class _Door:
             self.remeasure = False
 
     def after_run(self) -> None:
-        """Raise what stopped the run; warn about steps that did not converge."""
+        """Raise what stopped the run; warn of what its steps may be taken for and are not."""
         if self.fix.failed:
             self.methods["command"]("timer timeout off")
             self.fix.raise_failure()
-        missed = self.fix.unconverged_since_asked()
-        if self.warn and missed:
-            warnings.warn(f"{missed} steps of the run ended above tol: raise maxiter or tol", stacklevel=4)
+        for remark in self.fix.take_remarks():
+            warnings.warn(remark, stacklevel=4)
 
     def detach(self) -> None:
         """Undo what attaching did."""

@@ -41,7 +41,7 @@ def discs(n: int, seed: int) -> Grains:
 
 def settled(dim: int, n: int) -> Grains:
     """Return n grains that fell into the box and came to rest, but for one or two that roll on."""
-    balls = cloud(n, (0.25, 0.5), WIDTH[3], seed=3) if dim == 3 else discs(n, seed=3)
+    balls = cloud(n, (0.25, 0.5), WIDTH[3], seed=3) if dim == 3 else discs(n, seed=8)
     sides, height = (-0.1, WIDTH[dim] + 0.1), (-0.1, 1.0 + float(balls.x.max()))
     box = [sides, height if dim == 2 else sides, height]
     lmp = scenes.start(balls, 1e-2, gravity=GRAVITY, vmax=20.0, planar=dim == 2, box=box)
@@ -123,7 +123,17 @@ def tangential(rows: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
 
 
 def impulses(system: nscd_lmp.ContactSystem, rows: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Return the impulses of contact rows, (n, d) as the system has them; the contacts must be the same."""
-    np.testing.assert_array_equal(np.column_stack([rows["nx"], rows["ny"], rows["nz"]]), system.normal)
+    """Return the impulses of contact rows, (n, d) as the system has them.
+
+    The system must have all contacts of the rows; those that it has beside them have no impulse.
+    """
     assert system.tangents is not None
-    return np.column_stack([rows["impulse"], np.einsum("kij,kj->ki", system.tangents, tangential(rows))])
+    bodies = np.column_stack([rows["tag_i"] - 1, np.maximum(rows["tag_j"] - 1, -1)]).astype(int)
+    normals = np.column_stack([rows["nx"], rows["ny"], rows["nz"]])
+    place = {(i, j, *n): k for k, (i, j, n) in enumerate(zip(system.body_i, system.body_j, system.normal, strict=True))}
+    at = [place[(i, j, *n)] for (i, j), n in zip(bodies, normals, strict=True)]
+    assert len(set(at)) == len(at)
+    p = np.zeros((len(system), 1 + system.tangents.shape[1]))
+    p[at, 0] = rows["impulse"]
+    p[at, 1:] = np.einsum("kij,kj->ki", system.tangents[at], tangential(rows))
+    return p

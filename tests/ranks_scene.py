@@ -129,7 +129,7 @@ for _door in ("script", "python"):
     CASES[f"column_{_door}"] = lambda beds, d=_door: run(beds, "column", d, processors="1 1 *", tol=1e-12)
     CASES[f"shear_{_door}"] = lambda beds, d=_door: run(beds, "shear", d, friction=0.1, tol=1e-8, processors="* 1 1")
     CASES[f"moreau_{_door}"] = lambda beds, d=_door: run(beds, "bed", d, law="moreau")
-    CASES[f"impacts_{_door}"] = lambda beds, d=_door: run(beds, "thrown", d, restitution=0.5, tol=1e-12)
+    CASES[f"impacts_{_door}"] = lambda beds, d=_door: run(beds, "gas", d, restitution=0.5, tol=1e-12)
     for _time in ("fall", "fall_again"):
         CASES[f"{_time}_{_door}"] = lambda beds, d=_door: run(beds, "falling", d, steps=100, friction=0.3, tol=1e-6)
     CASES[f"warm_{_door}"] = lambda beds, d=_door: balanced(beds, d, True)

@@ -22,7 +22,10 @@ MAPS = find_maps()
 PAGE = Path(__file__).parent.parent / "docs" / "atlas.md"
 CHEAP = "gamma_mass"
 # What a message has to say besides that something is wrong.
-REMEDY = re.compile(r"raise|take another|closer to|remove one|smaller step|start it|https://docs.lammps.org/err", re.I)
+REMEDY = re.compile(
+    r"raise|use criterion|use law|start without|take another|closer to|remove one|smaller step|start it|https://docs.lammps.org/err",
+    re.I,
+)
 
 
 def plain(text: str) -> str:

@@ -30,6 +30,7 @@ def two_balls(gap: float = 1e-3, v: float = 0.0) -> Grains:
         ({"recovery": -1.0}, r"recovery = -1 is outside \[0, 1\]"),
         ({"tol": 0.0}, r"tol = 0 must be > 0"),
         ({"tol": -1e-7}, r"tol = -1e-07 must be > 0"),
+        ({"tol": 0.11, "criterion": "natural"}, r"tol = 0\.11 must be <= 0\.1 with criterion natural"),
         ({"tol": math.inf}, r"tol = inf must be"),
         ({"maxiter": 0}, r"maxiter = 0 must be at least 1"),
         ({"maxiter": -5}, r"maxiter = -5 must be at least 1"),

@@ -47,6 +47,12 @@ def run(script: Path, folder: Path, variables: dict[str, str]) -> str:
     return done.stdout
 
 
+def is_expected(warning: str, script: Path) -> bool:
+    """Return whether it tells of the overlaps that law moreau has to leave, or of those that the drum turns into."""
+    remedies = ["use law gap or a smaller timestep"] + ["move obstacles"] * (script.name == "in.drum")
+    return "grains overlap by up to" in warning and any(remedy in warning for remedy in remedies)
+
+
 def columns(output: str) -> dict[str, str]:
     """Return the last row of the last thermo table, by column name."""
     table = output.split("Loop time of")[-2]
@@ -61,7 +67,8 @@ def test_input_runs(script: Path, tmp_path: Path) -> None:
         folder = tmp_path / str(k)
         folder.mkdir()
         output = run(script, folder, variables)
-        assert not re.search(r"ERROR|WARNING|\bnan\b", output), output[-3000:]
+        assert not re.search(r"ERROR|\bnan\b", output), output[-3000:]
+        assert [line for line in output.splitlines() if "WARNING" in line and not is_expected(line, script)] == []
         last = columns(output)
         assert int(last["Step"]) >= STEPS
         assert last.get("unconverged", "0") == "0"

@@ -27,7 +27,7 @@ MPI_ON_ONE_HOST = {"UCX_TLS": "self,sysv", "UCX_SYSV_BW": "10000MBs", "MPIR_CVAR
 # Largest difference of velocities, m/s. Gravity gives 2e-3 in a step. A residual of tol on the mean contact is
 # amplified by the bed's condition, about 100 times. Friction is looser: all contacts of a grain, sliding by little, can
 # turn it.
-TOLERANCES = {"bed": 2e-7, "moreau": 2e-7, "column": 1e-9, "impacts": 2e-6, "friction": 5e-5, "shear": 5e-5}
+TOLERANCES = {"bed": 2e-7, "moreau": 2e-7, "column": 1e-9, "impacts": 1e-9, "friction": 5e-5, "shear": 5e-5}
 NEWTON = ("bed",)
 
 Answers = Callable[[int, str], Any]

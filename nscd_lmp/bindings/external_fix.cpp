@@ -177,7 +177,6 @@ void ExternalFix::record(std::int64_t timestep)
   StatsRow row{timestep, {}, report.seconds_contacts, report.seconds_solver};
   for (int c = 0; c < report_columns; ++c) row.columns[c] = report_column(report, c);
   stats_.push_back(row);
-  unconverged_ += !report.converged;
 }
 
 }    // namespace nscd

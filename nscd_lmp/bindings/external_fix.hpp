@@ -38,8 +38,7 @@ class ExternalFix {
 
   const Step &step() const { return step_; }
   const std::vector<StatsRow> &stats() const { return stats_; }
-  // Steps that ended above tol since this was last asked.
-  long unconverged_since_asked() { return std::exchange(unconverged_, 0); }
+  std::vector<std::string> take_remarks() { return step_.take_remarks(); }
   void set_cutoff(double cutoff) { cutoff_ = cutoff; }
 
   // What stopped the run; empty if nothing did. Reading it forgets it.
@@ -74,7 +73,6 @@ class ExternalFix {
   std::vector<double> masses_;
   std::vector<StatsRow> stats_;
   double largest_radius_ = 0;
-  long unconverged_ = 0;
   std::exception_ptr failure_;
 };
 

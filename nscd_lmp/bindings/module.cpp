@@ -10,6 +10,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
+#include <nanobind/stl/vector.h>
 
 #include <cstring>
 
@@ -192,7 +193,7 @@ void bind_external_fix(nb::module_ &m)
       .def_prop_ro("crowding", [](const ExternalFix &fix) { return fix.step().crowding(); })
       .def("set_cutoff", &ExternalFix::set_cutoff, "cutoff"_a)
       .def_prop_ro("failed", &ExternalFix::failed)
-      .def("unconverged_since_asked", &ExternalFix::unconverged_since_asked)
+      .def("take_remarks", &ExternalFix::take_remarks)
       .def("raise_failure", [](ExternalFix &fix) { if (auto e = fix.take_failure()) std::rethrow_exception(e); })
       .def("stats_bytes", &stats_bytes)
       .def("traffic", &traffic)

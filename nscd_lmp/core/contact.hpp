@@ -5,6 +5,7 @@
 // and obstacles (walls, atoms outside the group) are bodies of infinite mass, so the loop has no branches.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -47,6 +48,17 @@ inline double dot(const Vec4 &a, const Vec4 &b)
   const Vec4 c = a * b;
   return (c[0] + c[1]) + (c[2] + c[3]);
 }
+
+// Asks for what a visit of the contact will need of its bodies: where they do not fit the cache, a sweep would wait for
+// each of them.
+inline void fetch_bodies(const Contact &c, const Body *bodies)
+{
+  __builtin_prefetch(bodies + c.i, 1);
+  __builtin_prefetch(bodies + c.j, 1);
+}
+
+// So many contacts ahead of the visit.
+constexpr std::size_t fetch_ahead = 8;
 
 // Normal relative velocity of the contact's bodies, m/s, > 0 when separating.
 inline double normal_velocity(const Contact &c, const Body *bodies)

@@ -92,6 +92,7 @@ NSCD_HOT Sums frictionless(const Problem &problem, const Range &range, const dou
   const Body *bodies = problem.bodies.data();
   for (std::size_t k = range.first; k < range.last; ++k) {
     const Contact &c = problem.contacts[k];
+    fetch_bodies(problem.contacts[std::min(k + fetch_ahead, range.last - 1)], bodies);
     const double v = normal_velocity(c, bodies) + c.bias;
     sum.add_frictionless(1 / c.w_inverse, c.impulse, v);
     if (local_velocity) sum.of.motion += std::abs(local_velocity[k] - v);

@@ -5,13 +5,16 @@
 
 namespace nscd {
 
-// Fills state.contacts and state.infos with every pair and wall contact whose gap is at most the reach of its atoms.
-// Impulses and biases are left 0. Candidates beyond that but within state.watch go to state.near.
-// Raises Error for an overlap beyond the smaller radius.
-void detect(State &state, const PairList &pairs);
+// Which pairs are contacts from the start: all whose gap is at most the reach of their atoms, or, of those, only the
+// ones that free motion brings together and the closest of the rest.
+enum class Sought { within_reach, foreseen };
 
-// Watched candidates that state.displacement would make overlap become contacts, at the end of state.contacts.
-// Returns how many.
-std::size_t promote_near(State &state);
+// Fills state.contacts and state.infos. Impulses and biases are left 0. Other candidates within state.watch go to
+// state.near. Raises Error for an overlap beyond the smaller radius.
+void detect(State &state, const PairList &pairs, Sought sought);
+
+// Watched candidates that state.displacement would drive more than `slack` (m) into each other become contacts, at the
+// end of state.contacts. Returns how many.
+std::size_t promote_near(State &state, double slack);
 
 }    // namespace nscd

@@ -21,6 +21,8 @@
 #include "momentum.hpp"
 #include "visit.hpp"
 
+#include <algorithm>
+
 namespace nscd {
 
 // One frictionless sweep over some of the contacts, with momentum if there are impulses before the last one (bodies are
@@ -36,6 +38,7 @@ NSCD_HOT Swept sweep(Problem &problem, const Range &range, [[maybe_unused]] doub
   double corrected = 0, against = 0;
   for (std::size_t k = range.first; k < range.last; ++k) {
     Contact &c = contacts[k];
+    fetch_bodies(contacts[std::min(k + fetch_ahead, range.last - 1)], bodies);
     const Body bi = bodies[c.i], bj = bodies[c.j];
     const double v = dot(c.normal, bi - bj) + c.bias;
     double start = c.impulse;
@@ -88,6 +91,9 @@ NSCD_HOT Swept frictional_sweep(Problem &problem, const Range &range, [[maybe_un
   double against = 0;
   for (std::size_t k = range.first; k < range.last; ++k) {
     Contact &c = problem.contacts[k];
+    const Contact &soon = problem.contacts[std::min(k + fetch_ahead, range.last - 1)];
+    fetch_bodies(soon, bodies);
+    fetch_bodies(soon, spins);
     auto &slide = slides[k];
     const Body bi = bodies[c.i], bj = bodies[c.j];
     const Tangent si = M::spin(spins[c.i]), sj = M::spin(spins[c.j]);

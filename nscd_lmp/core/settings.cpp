@@ -131,6 +131,9 @@ static void choose_tolerance(Settings &s)
   if (!s.tol) s.tol = of_scene ? tol_of_scene : tol_of_paper;
   if (!(*s.tol > 0 && std::isfinite(*s.tol)))
     fail("tol = ", *s.tol, " must be > 0: it is the value of the criterion at which a step is solved");
+  if (s.criterion == Stop::natural && *s.tol > residual_worth_saying)
+    fail("tol = ", *s.tol, " must be <= ", residual_worth_saying, " with criterion natural: it is a share of the "
+         "velocities that contacts have to stop");
 }
 
 static void check_overlap(const Settings &s)

@@ -79,6 +79,7 @@ struct State {
   std::size_t found_count = 0;
   std::vector<Candidate> touching{};     // contacts-to-be, in list order, or by part where threads share them
   std::vector<Candidate> near{};         // watched by law gap: made contacts if the solution drives them together
+  std::size_t unforeseen = 0;            // of those, pairs within reach that free motion does not bring together
   std::vector<Candidate> ordered{};      // scratch
 
   double watch = 0;                    // surface distance within which pairs are watched, m

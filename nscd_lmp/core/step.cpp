@@ -26,6 +26,7 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
     law_(find_law(settings_.law).make()), state_{.settings = settings_, .grains = {}, .dimension = dimension},
     halo_(ranks && ranks->count() > 1 ? std::make_unique<Halo>(*ranks) : nullptr),
     team_(settings_.threads > 1 ? std::make_unique<Team>(settings_.threads) : nullptr),
+    sought_(law_->resolves_impacts(settings_) || custom_ || !solver_->ranks ? Sought::within_reach : Sought::foreseen),
     prediction_(law_->prediction(settings_)), look_ahead_(law_->looks_ahead() ? 1 : 0),
     crowding_(nscd::crowding(settings_.threads, ranks))
 {
@@ -43,6 +44,7 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
 void Step::begin_run(bool list_just_built)
 {
   report_ = {};
+  remarks_.begin();
   if (list_just_built) list_.expect_new_list();
 }
 
@@ -53,10 +55,11 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
   state_.dt = dt;
   state_.grains = grains;
   prepare(pairs);
-  together([&] { detect(state_, pairs); });
+  together([&] { detect(state_, pairs, sought_); });
   solve();
   finish();
   write_back();
+  remarks_.add(report_);
   report_.seconds_contacts = seconds(start, Clock::now()) - report_.seconds_solver;
   return report_;
 }
@@ -96,9 +99,11 @@ void Step::prepare(const PairList &pairs)
   listed_ = -unlisted;
   const double speed = std::sqrt(speed2);
   state_.round_off = 1e-14 * speed;
+  report_.largest_move_ratio = state_.dt * speed / -smallest;
   if (settings_.overlap) options_.approach = *settings_.overlap * -smallest / state_.dt;
+  velocity_scale_ = velocity_scale(state_.smooth_kick, speed);
   state_.tolerance = options_.tol;
-  if (options_.stop == Stop::natural) state_.tolerance *= velocity_scale(state_.smooth_kick, speed);
+  if (options_.stop == Stop::natural) state_.tolerance *= velocity_scale_;
   require_reach({listed_, moved, longest_move(speed)}, speed);
 }
 
@@ -143,30 +148,30 @@ void Step::solve_within_energy(const Part &part, EnergyLimit::From from)
 {
   share_among_threads(part.contacts);
   const bool newton = part.e != part.e_t;
-  const auto solve = [&] { return solve_part(part); };
+  const auto solve = [&] { return solve_part(part, options_.maxiter); };
   const bool as_it_is = custom_ || state_.friction.model == Model::frictionless;
   if (as_it_is) solve();
   else energy_limited_ |= energy_limit_.solve(state_, part.contacts, newton, from, solve);
 }
 
-SolverReport Step::solve_problem(Problem &problem)
+SolverReport Step::solve_problem(Problem &problem, const SolverOptions &options)
 {
-  if (!custom_ && (!halo_ || solver_->ranks)) return solver_->solve(problem, options_);
+  if (!custom_ && (!halo_ || solver_->ranks)) return solver_->solve(problem, options);
   if (halo_)
-    return solve_by_ranks(problem, options_, [&] {
+    return solve_by_ranks(problem, options, [&] {
       Problem own = problem;
       own.halo = nullptr;
       if (custom_) ask_custom(problem.contacts.size());
-      else solver_->solve(own, options_);
+      else solver_->solve(own, options);
     });
   ask_custom(problem.contacts.size());
   SolverReport solved{.iterations = 1, .criterion = measure(problem)};
-  solved.converged = nscd::solved(solved.criterion, options_);
+  solved.converged = nscd::solved(solved.criterion, options);
   return solved;
 }
 
 // Returns whether it is solved.
-bool Step::solve_part(const Part &part)
+bool Step::solve_part(const Part &part, int maxiter)
 {
   const auto start = Clock::now();
   const std::span contacts = std::span(state_.contacts).first(part.contacts);
@@ -178,7 +183,9 @@ bool Step::solve_part(const Part &part)
     problem.team = team_.get();
     problem.parts = &state_.slabs.parts();
   }
-  const SolverReport solved = solve_problem(problem);
+  SolverOptions options = options_;
+  options.maxiter = maxiter;
+  const SolverReport solved = solve_problem(problem, options);
   report_.seconds_solver += seconds(start, Clock::now());
   if (!std::isfinite(solved.criterion.total()))
     fail("solver ", settings_.solver,
@@ -193,73 +200,10 @@ bool Step::solve_part(const Part &part)
   return solved.converged;
 }
 
-// The contact set grows while the solution drives watched pairs together; that ends, for lack of pairs. Where impacts
-// come first, all of it starts again with the larger set; otherwise the solution is carried on.
-void Step::solve()
-{
-  report_.iterations = 0;
-  report_.seconds_solver = 0;
-  report_.converged = true;
-  energy_limited_ = false;
-  state_.impact_impulse.clear();
-  state_.friction.impact_impulse.clear();
-  place_slides(state_, 0);
-  if (halo_) halo_->share_contacts(state_);
-  std::size_t first = 0;
-  const bool impacts_first = law_->resolves_impacts(settings_);
-  if (impacts_first) {
-    free_bodies_ = state_.bodies;
-    free_spins_ = state_.friction.spins;
-  }
-  bool again = false;
-  do {
-    if (impacts_first) {
-      resolve_impacts_first(again);
-      first = 0;
-    }
-    start_contacts(first, again && !impacts_first);
-    solve_within_energy({state_.contacts.size(), law_->restitution_in_bias(settings_),
-                         law_->tangential_restitution_in_bias(settings_), free_norm_}, EnergyLimit::From::step);
-    if (halo_) halo_->refresh(state_);
-    law_->displace(state_);
-    first = state_.contacts.size();
-    again = true;
-  } while (promote());
-  report_.contacts = std::int64_t(sum_everywhere(state_, double(state_.contacts.size())));
-  report_.energy_limited += energy_limited_;
-  judge();
-}
-
-// Whether watched pairs have become contacts.
-bool Step::promote()
-{
-  const std::size_t before = state_.contacts.size();
-  std::size_t more = 0;
-  together([&] { more = promote_near(state_); });
-  if (sum_everywhere(state_, double(more)) == 0) return false;
-  place_slides(state_, before);
-  if (halo_) halo_->share_contacts(state_);
-  return true;
-}
-
-void Step::resolve_impacts_first(bool again)
-{
-  if (again) {
-    report_.converged = true;  // of the pass that is given up
-    energy_limited_ = false;
-    state_.bodies = free_bodies_;
-    state_.friction.spins = free_spins_;
-    place_slides(state_, 0);
-  }
-  for (Contact &c : state_.contacts) c.impulse = 0;
-  law_->impacts(state_, [this](std::size_t count) {
-    const double norm = velocity_norm(state_, 0, count);
-    solve_within_energy({count, settings_.restitution, settings_.e_t, norm}, EnergyLimit::From::solve);
-  });
-}
-
 void Step::judge()
 {
+  const double residual = report_.criterion.relative * free_norm_;  // m/s, the 2-norm
+  report_.residual_ratio = residual > 0 ? residual / (std::sqrt(double(report_.contacts)) * velocity_scale_) : 0;
   if (report_.converged) return;
   const bool too_deep = solved(report_.criterion, {.tol = options_.tol, .stop = options_.stop});
   if (settings_.unconverged == Unconverged::error && too_deep)

@@ -1,10 +1,12 @@
 // One step of the scheme: arrays in, contacts, solver, arrays out. Both doors call this and nothing beneath it.
 #pragma once
 
+#include "detection.hpp"
 #include "energy_limit.hpp"
 #include "halo.hpp"
 #include "law.hpp"
 #include "list_guard.hpp"
+#include "remarks.hpp"
 #include "solver.hpp"
 #include "state.hpp"
 #include "team.hpp"
@@ -22,8 +24,10 @@ struct StepReport {
   std::int64_t contacts = 0;
   int iterations = 0;
   Criterion criterion;
+  double residual_ratio = 0;         // natural map, root mean square of the contacts, over what velocities are worth
   double largest_overlap = 0;        // m, at q_{k+1}
   double largest_overlap_ratio = 0;  // over the smaller radius of the pair
+  double largest_move_ratio = 0;     // dt times the fastest grain's speed at the start, over the smallest radius
   double dissipated_in_step = 0;     // J, by contacts
   double dissipated = 0;             // J, by contacts since begin_run
   long unconverged = 0;              // steps since begin_run
@@ -58,6 +62,8 @@ class Step {
   bool has_custom_solver() const { return bool(custom_); }
   const State &state() const { return state_; }
   const Halo *halo() const { return halo_.get(); }
+  // What users are to be told of the steps since the run began, or since they were told.
+  std::vector<std::string> take_remarks() { return remarks_.take(settings_, law_->looks_ahead()); }
   // What users are to be told of threads without cores of their own; empty if there are none.
   const std::string &crowding() const { return crowding_; }
 
@@ -74,7 +80,9 @@ class Step {
   void together(const std::function<void()> &local);
   void prepare(const PairList &pairs);
   void start_contacts(std::size_t first, bool again);
+  void begin_rounds();
   void solve();
+  double left_of_contacts() const;
   bool promote();
   void resolve_impacts_first(bool again);
   void judge();
@@ -84,9 +92,11 @@ class Step {
     double e, e_t;         // restitution that the biases contain
     double norm;           // of free velocities and biases
   };
-  bool solve_part(const Part &part);
+  bool doubts_contacts() const;
+  bool sweep_briefly(const Part &part, int sweeps);
+  bool solve_part(const Part &part, int maxiter);
   void share_among_threads(std::size_t contacts);
-  SolverReport solve_problem(Problem &problem);
+  SolverReport solve_problem(Problem &problem, const SolverOptions &options);
   void solve_within_energy(const Part &part, EnergyLimit::From from);
   void ask_custom(std::size_t count);
   void finish();
@@ -106,6 +116,8 @@ class Step {
   SolverOptions options_;
   Workspace workspace_;
   StepReport report_;
+  Remarks remarks_;
+  const Sought sought_;            // all pairs within reach where another round costs as much as the first
   const double prediction_;        // contacts are sought at q_k + prediction dt v_k
   const double look_ahead_;        // and this times dt |v| around (0 or 1)
   AlignedVector<Body> free_bodies_;  // as gathered, where impacts may have to be resolved again
@@ -113,6 +125,7 @@ class Step {
   bool energy_limited_ = false;    // in this step
   bool shared_among_threads_ = false;   // the contacts that are being solved
   double free_norm_ = 0;           // of the step's contacts, m/s
+  double velocity_scale_ = 0;      // what velocities in the scene are worth, m/s
   double listed_ = 0;              // as Reach has it
   bool wants_rebuild_ = false;
   const std::string crowding_;

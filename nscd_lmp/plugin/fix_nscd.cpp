@@ -238,10 +238,8 @@ void FixNscd::final_integrate()
 
 void FixNscd::post_run()
 {
-  const auto &report = step_->report();
-  if (report.unconverged == 0 || step_->settings().unconverged != nscd::Unconverged::warn) return;
-  error->warning(FLERR, "Fix nscd {}: {} of {} steps ended above tol {}: raise maxiter (now {}) or tol", id,
-                 report.unconverged, steps_, *step_->settings().tol, step_->settings().maxiter);
+  for (const std::string &remark : step_->take_remarks())
+    if (comm->me == 0) error->warning(FLERR, "Fix nscd {}: {}", id, remark);
 }
 
 bool FixNscd::local_rows_wanted() const { return rows_every_step_ || output->next == update->ntimestep; }

@@ -51,7 +51,7 @@ TEST(overlap_bounds_what_any_contact_is_driven_into_another)
     Random random(5);
     Scene scene = random_scene(random, 40, 1, 0.12, 1);
     const double smallest = *std::min_element(scene.radius.begin(), scene.radius.end());
-    const std::string words = "criterion natural tol 0.3 maxiter 100000 overlap " + std::to_string(bound);
+    const std::string words = "criterion natural tol 0.1 maxiter 100000 overlap " + std::to_string(bound);
     nscd::Step step(settings("law gap " + words + box_walls(1, 1)));
     for (int k = 0; k < 30; ++k) {
       scene.accelerate({0, 0, -1});

@@ -24,12 +24,10 @@ MECHANISM = (
 )
 REMEDY = (
     "start without overlap; recovery 0.2, the default, and time; where no force acts, overlapping grains have to be"
-    " moved by hand. Beyond one radius: `remove one of them`."
+    " moved by hand. Up to one radius an overlap is taken as the state that was asked for, and told at the end of the"
+    " run (`start without overlap`); beyond: `remove one of them`."
 )
-UNSEEN = {
-    "penetrated": "the overlap is in f_ID[8] and f_ID[10] after every step; up to one radius it is taken as the state"
-    " that was asked for, and nothing warns.",
-}
+UNSEEN: dict[str, str] = {}
 STEPS, DT = 500, 1e-3  # -, s
 RADIUS = 0.5e-3
 OPTIONS: dict[str, Any] = {"solver": "pdas", "law": "gap", "criterion": "natural", "tol": 1e-6, "maxiter": 1000}

@@ -1,7 +1,7 @@
 // law gap: contact at the level of the gap (Stewart & Trinkle 1996; Anitescu & Potra 1997; Anitescu 2006).
 //
-//   S   = { pairs that can meet within the step: gap(q_k) < dt (speed_i + speed_j), and those farther apart that
-//           the solution would drive into each other: they join and the step is solved on }
+//   S   = { pairs within reach, gap(q_k) < dt (speed_i + speed_j), that free motion brings near (detection.cpp), and
+//           others that the solution would drive into each other: they join and the step is solved on }
 //   gap > 0:  v_n + gap/dt >= 0            no penetration at q_{k+1} = q_k + dt v_{k+1}
 //   gap < 0:  v_n >= min(recovery |gap|/dt, cap)
 //   each complementary to p >= 0

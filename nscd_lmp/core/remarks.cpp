@@ -1,0 +1,61 @@
+#include "remarks.hpp"
+
+#include "step.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+namespace nscd {
+
+namespace {
+
+constexpr double overlap_worth_saying = 0.01;
+// Two of the smallest grains, each moved by its diameter, can have passed each other.
+constexpr double move_worth_saying = 2;
+
+template <class... Parts>
+std::string sentence(const Parts &...parts)
+{
+  std::ostringstream text;
+  text.precision(2);
+  (text << ... << parts);
+  return text.str();
+}
+
+}    // namespace
+
+void Remarks::add(const StepReport &r)
+{
+  ++steps_;
+  unconverged_ += !r.converged;
+  if (r.converged && r.residual_ratio > residual_worth_saying) {
+    ++misjudged_;
+    worst_residual_ = std::max(worst_residual_, r.residual_ratio);
+  }
+  overlap_ratio_ = std::max(overlap_ratio_, r.largest_overlap_ratio);
+  move_ratio_ = std::max(move_ratio_, r.largest_move_ratio);
+}
+
+std::vector<std::string> Remarks::take(const Settings &s, bool looks_ahead)
+{
+  std::vector<std::string> said;
+  const bool of_solver = s.unconverged == Unconverged::warn;
+  if (of_solver && unconverged_ > 0)
+    said.push_back(sentence(unconverged_, " of ", steps_, " steps ended above tol ", *s.tol, ": raise maxiter (now ",
+                            s.maxiter, ") or tol"));
+  if (of_solver && misjudged_ > 0 && s.criterion == Stop::paper)
+    said.push_back(sentence(misjudged_, " of ", steps_, " steps met tol ", *s.tol, " of criterion (42) with ",
+                            "velocities that are off by up to ", worst_residual_, " of what a step changes: use ",
+                            "criterion natural, or a smaller tol"));
+  if (overlap_ratio_ > std::max(overlap_worth_saying, s.overlap.value_or(0)))
+    said.push_back(sentence("grains overlap by up to ", overlap_ratio_, " of the smaller radius: ",
+                            looks_ahead ? "start without overlap, lower tol, or move obstacles by less a step"
+                                        : "use law gap or a smaller timestep"));
+  if (!looks_ahead && move_ratio_ > move_worth_saying)
+    said.push_back(sentence("grains move by up to ", move_ratio_, " of the smallest radius in a step, and law ", s.law,
+                            " does not see them pass each other: use law gap or a smaller timestep"));
+  begin();
+  return said;
+}
+
+}    // namespace nscd

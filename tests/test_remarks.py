@@ -1,0 +1,114 @@
+"""What the end of a run tells of steps that were taken and are not what they may be taken for, by both doors."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from pathlib import Path
+from typing import Any
+
+import pytest
+from scenes import DOORS, FLOOR, GRAVITY, grains, harden, start
+
+R = 0.01  # m
+
+
+def misjudged() -> Any:
+    """A ball of 10 g that SBP throws up again: (42) sees 1.5e-8, the relative residual is 1.5."""
+    lmp = start(grains((0, 0, R), R), 1e-4, gravity=GRAVITY)
+    return lmp, {"solver": "sbp", "rho": 2.5, "law": "moreau", "tol": 1e-7, "warmstart": False, "walls": [FLOOR]}
+
+
+def overlapping() -> Any:
+    """A ball that moves by 0.04 r a step: law moreau stops it at the midpoint, half of that in the floor."""
+    lmp = start(grains((0, 0, R + 1e-7), R, v=(0, 0, -1.0)), 4e-4, vmax=2)
+    return lmp, {"law": "moreau", "walls": [FLOOR]}
+
+
+def overlapping_start() -> Any:
+    """Two balls that start 5 % in each other, in free fall: nothing pulls them, so nothing may push them apart."""
+    lmp = start(grains([(0, 0, R), (1.95 * R, 0, R)], R), 1e-4)
+    return lmp, {"law": "gap"}
+
+
+def passing() -> Any:
+    """A ball that flies 3 radii a step."""
+    lmp = start(grains((0, 0, R), R, v=(0, 0, 30.0)), 1e-3, vmax=40)
+    return lmp, {"law": "moreau"}
+
+
+def unsolved() -> Any:
+    """A step for which one iteration is too few."""
+    lmp = start(grains([(0, 0, R), (0, 0, 3 * R)], R), 1e-4, gravity=GRAVITY)
+    return lmp, {"maxiter": 1, "tol": 1e-12, "solver": "pdas", "walls": [FLOOR]}
+
+
+TOLD = {
+    misjudged: r"1 of 1 steps met tol 1e-07 of criterion \(42\) with velocities that are off by up to 1\.5 .*natural",
+    overlapping: r"grains overlap by up to 0\.02 of the smaller radius: use law gap or a smaller timestep",
+    overlapping_start: r"grains overlap by up to 0\.05 of the smaller radius: start without overlap, lower tol, or",
+    passing: r"grains move by up to 3 of the smallest radius in a step, and law moreau does not see them pass",
+    unsolved: r"1 of 1 steps ended above tol 1e-12: raise maxiter \(now 1\) or tol",
+}
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Any:
+    """Return a function that runs commands on a scene, by a door, and returns what was told."""
+    opened = []
+
+    def run(scene: Any, door: str, commands: list[str], **options: Any) -> list[str]:
+        lmp, settings = scene()
+        opened.append(lmp)
+        log = tmp_path / f"log.{len(opened)}"
+        lmp.command(f"log {log}")
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            harden(lmp, door, **settings, **options)
+            lmp.commands_list(commands)
+        lmp.command("log none")
+        if door == "python":
+            return [str(one.message) for one in told]
+        return [line for line in log.read_text().splitlines() if line.startswith("WARNING: Fix nscd")]
+
+    yield run
+    for lmp in opened:
+        lmp.close()
+
+
+@pytest.mark.parametrize("door", DOORS)
+@pytest.mark.parametrize("scene", TOLD, ids=lambda scene: scene.__name__)
+def test_end_of_a_run_tells(run, scene, door):
+    (told,) = run(scene, door, ["run 1"])
+    assert re.search(TOLD[scene], told), told
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_each_run_tells_of_its_own_steps(run, door):
+    # the ball has come to rest in the floor after the second run; the overlap is still there
+    assert len(run(overlapping, door, ["run 1", "run 3", "thermo 10"])) == 2
+    first, second = run(passing, door, ["run 2", "velocity all set 0 0 1", "run 2", "velocity all set 0 0 30", "run 1"])
+    assert "move by up to 3 " in first
+    assert "move by up to 3 " in second
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_ignore_is_about_what_solvers_leave(run, door):
+    assert run(misjudged, door, ["run 1"], unconverged="ignore") == []
+    assert run(unsolved, door, ["run 1"], unconverged="ignore") == []
+    assert len(run(overlapping, door, ["run 1"], unconverged="ignore")) == 1
+
+
+@pytest.mark.parametrize("door", DOORS)
+@pytest.mark.parametrize("law", ["gap", "moreau"])
+def test_nothing_is_told_of_balls_at_rest(run, door, law):
+    def at_rest() -> Any:
+        lmp = start(grains([(0, 0, R), (0, 0, 3 * R)], R), 1e-4, gravity=GRAVITY)
+        return lmp, {"law": law, "walls": [FLOOR]}
+
+    assert run(at_rest, door, ["run 50"]) == []
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_overlap_that_was_allowed_is_not_told(run, door):
+    assert run(overlapping_start, door, ["run 1"], overlap=0.06) == []
