@@ -94,7 +94,7 @@ def killed(folder: Path, ranks: int, when_there_is: str, **blanks: str) -> None:
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_killed_run_goes_on_from_its_last_restart(tmp_path: Path, ranks: int) -> None:
-    """Within tol, not to the last bit: a run that is set up sorts its atoms, one that only writes a restart does not."""
+    """Within tol: a run that is set up sorts its atoms, one that only writes a restart does not."""
     settings = {"warmstart": "yes", "settings": "friction 0.1 tol 1e-6"}
     through = "restart 100 fall.*.restart\nrun {}"
     straight = lines(tmp_path, ranks, "straight.dump", grains=CLOUD, run=through.format(400), **settings)

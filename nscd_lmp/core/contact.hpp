@@ -35,6 +35,12 @@ struct Candidate {
   std::int32_t atom_i, atom_j;
 };
 
+// A candidate that is no contact, and how far apart it was where contacts were sought, m.
+struct Watched {
+  Candidate pair;
+  double gap;
+};
+
 // What a contact needs outside the sweep.
 struct ContactInfo {
   double gap;           // m, negative when overlapping; at detection, then at the end of the step

@@ -56,6 +56,12 @@ bool is_void(const State &s, const Candidate &c, const PairList &pairs)
   return pairs.cross_pairs_twice && c.atom_j >= s.grains.owned && s.grains.tag[c.atom_i] > s.grains.tag[c.atom_j];
 }
 
+NSCD_INLINE double gap_of(const Sphere &a, const Sphere &b)
+{
+  const Vec4 separation = a.centre - b.centre;
+  return std::sqrt(dot(separation, separation)) - a.radius - b.radius;
+}
+
 // Sorts what was found into contacts-to-be and watched pairs, without branching on which it is.
 NSCD_HOT void sort_pairs(State &s, const PairList &pairs)
 {
@@ -66,11 +72,10 @@ NSCD_HOT void sort_pairs(State &s, const PairList &pairs)
     const Candidate c = s.found[k];
     if (is_void(s, c, pairs)) continue;
     const Sphere &a = s.spheres[c.atom_i], &b = s.spheres[c.atom_j];
-    const Vec4 separation = a.centre - b.centre;
-    const double limit = a.radius + a.reach + b.radius + b.reach;
-    const bool reaches = dot(separation, separation) <= limit * limit;
+    const double gap = gap_of(a, b);
+    const bool reaches = !(gap > a.reach + b.reach);   // not-a-number does, and is refused
     s.touching[touching] = c;
-    s.near[near] = c;
+    s.near[near] = {c, gap};
     touching += reaches;
     near += !reaches;
   }
@@ -89,12 +94,11 @@ NSCD_HOT void watch_unforeseen(State &s)
     const Candidate c = s.touching[k];
     const Sphere &a = s.spheres[c.atom_i], &b = s.spheres[c.atom_j];
     const Vec4 separation = a.centre - b.centre;
-    const double distance = std::sqrt(dot(separation, separation));
+    const double distance = std::sqrt(dot(separation, separation)), gap = distance - a.radius - b.radius;
     const Vec4 closing = s.bodies[s.owner[c.atom_i]] - s.bodies[s.owner[c.atom_j]];
-    const bool meets = foresight.meets(distance - a.radius - b.radius, a.reach + b.reach,
-                                       dot(separation, closing) / distance);
+    const bool meets = foresight.meets(gap, a.reach + b.reach, dot(separation, closing) / distance);
     s.touching[kept] = c;
-    s.near[doubted] = c;
+    s.near[doubted] = {c, gap};
     kept += meets;
     doubted += !meets;
   }
@@ -109,7 +113,9 @@ void sort_wall(State &s, int wall)
   for (int i = 0; i < s.grains.owned; ++i) {
     const double gap = height.of(s.spheres[i].centre) - s.spheres[i].radius;
     if (gap > s.watch || s.bodies[i][3] == 0) continue;
-    (gap > s.spheres[i].reach ? s.near : s.touching).push_back({i, -1 - wall});
+    const Candidate found{i, -1 - wall};
+    if (gap > s.spheres[i].reach) s.near.push_back({found, gap});
+    else s.touching.push_back(found);
   }
 }
 
@@ -136,6 +142,19 @@ void place_contacts(State &s)
   s.slabs.divide(s);
   s.slabs.order_candidates(s);
   for (int part = 0; part < s.slabs.parts().count(); ++part) place_range(s, s.slabs.parts().range(part));
+}
+
+void measure_moves(State &s)
+{
+  s.moved.assign(s.bodies.size(), 0);
+  for (int i = 0; i < s.moving(); ++i) s.moved[i] = std::sqrt(dot(s.displacement[i], s.displacement[i]));
+}
+
+// Whether the moves are long enough: next to nothing to ask, and nearly always no.
+NSCD_INLINE bool may_overlap(const State &s, const Watched &near, double slack)
+{
+  const double other = is_wall(near.pair) ? 0 : s.moved[s.owner[near.pair.atom_j]];
+  return near.gap + slack <= 1.0000001 * (s.moved[s.owner[near.pair.atom_i]] + other);
 }
 
 // Whether the candidate's grains overlap by more than `slack` once they have moved by s.displacement.
@@ -165,12 +184,13 @@ void detect(State &state, const PairList &pairs, Sought sought)
 std::size_t promote_near(State &state, double slack)
 {
   const std::size_t before = state.contacts.size();
+  measure_moves(state);
   std::size_t kept = 0;
-  for (const Candidate near : state.near) {
-    if (will_overlap(state, near, slack)) {
+  for (const Watched near : state.near) {
+    if (may_overlap(state, near, slack) && will_overlap(state, near.pair, slack)) {
       resize_closely(state.contacts, state.contacts.size() + 1);
       resize_closely(state.infos, state.infos.size() + 1);
-      place_contact(state, state.contacts.size() - 1, near);
+      place_contact(state, state.contacts.size() - 1, near.pair);
     } else {
       state.near[kept++] = near;
     }

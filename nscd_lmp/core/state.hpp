@@ -68,6 +68,7 @@ struct State {
   Copies copies{};
   AlignedVector<Body> bodies{};          // (moving() + obstacle_copies a slab)
   AlignedVector<Vec4> displacement{};    // (moving()) from where contacts were sought to q_{k+1}
+  std::vector<double> moved{};           // (bodies) its length, m; scratch
   std::vector<Contact> contacts{};
   std::vector<ContactInfo> infos{};      // beside contacts
   std::vector<double> impact_impulse{};  // beside contacts, N s, of impacts resolved ahead of them; or empty
@@ -78,7 +79,7 @@ struct State {
   std::vector<Candidate> found{};        // listed pairs that are near enough to watch, the first found_count
   std::size_t found_count = 0;
   std::vector<Candidate> touching{};     // contacts-to-be, in list order, or by part where threads share them
-  std::vector<Candidate> near{};         // watched by law gap: made contacts if the solution drives them together
+  std::vector<Watched> near{};           // by law gap: made contacts if the solution drives them together
   std::size_t unforeseen = 0;            // of those, pairs within reach that free motion does not bring together
   std::vector<Candidate> ordered{};      // scratch
 

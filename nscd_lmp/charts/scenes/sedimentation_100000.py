@@ -30,19 +30,23 @@ def cases(size: Size) -> list[dict[str, Any]]:
             *penalty_cases(["gran/hooke/history"], [1e3], LIGHTEST, [1 / 4], grains=150),
         ]
 
-    def rigid(dts: list[float], tols: list[float]) -> list[dict[str, Any]]:
-        return rigid_cases(["gap/apgs"], dts, tols, grains=100_000)
+    def rigid(method: str, dts: list[float], overlaps: list[float], **tol: float) -> list[dict[str, Any]]:
+        return overlap_cases([method], dts, overlaps, grains=100_000, **tol)
 
     def soft(*stiffnesses: float) -> list[dict[str, Any]]:
         return penalty_cases(["gran/hooke/history"], stiffnesses, LIGHTEST, [1 / 3], grains=100_000)
 
     # in turns, so that a busy hour hits both families
     return [
-        *overlap_cases(["gap/apgs"], [5e-4], [5e-3, 5e-4], grains=100_000),
-        *rigid([1e-3], [1e-6]),
+        *rigid("gap/apgs", [5e-4], [5e-3, 5e-4]),
         *soft(3e3, 3e5),
-        *rigid([1e-3], [1e-7]),
+        *rigid("gap/apgs", [2.5e-4, 5e-4, 1e-3], [5e-3, 5e-4], tol=1e-5),
+        *soft(5e3, 1e5),
+        *rigid("gap/apgs", [2.5e-4, 5e-4], [9e-3], tol=1e-4),
+        *rigid_cases(["gap/apgs"], [5e-4], [1e-6], grains=100_000),
         *soft(1e4),
+        *rigid("gap/auto", [5e-4], [5e-4]),
+        *rigid_cases(["gap/pdas"], [5e-4], [1e-6], grains=100_000),
     ]
 
 

@@ -102,6 +102,7 @@ NSCD_HOT void Gap::open_contacts(const State &s)
   resize_closely(suspects_, n);
   std::size_t count = 0;
   for (std::size_t k = 0; k < n; ++k) {
+    fetch_bodies(s.contacts[std::min(k + fetch_ahead, n - 1)], mean_.data());
     suspects_[count] = std::uint32_t(k);
     count += s.infos[k].gap + s.dt * rate(s.contacts[k]) < -slack_;
   }

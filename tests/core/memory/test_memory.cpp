@@ -38,7 +38,7 @@ struct Sizes {
       contacts(state.contacts.size()), watched(state.near.size()), impacts(state.impact_impulse.size())
   {
     for (const auto &info : state.infos) pairs += info.atom_j >= 0;
-    for (const auto &near : state.near) pairs += near.atom_j >= 0;
+    for (const auto &near : state.near) pairs += near.pair.atom_j >= 0;
   }
   Sizes() = default;
   bool within(const Sizes &s) const
