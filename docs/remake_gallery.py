@@ -66,10 +66,14 @@ def remake(names: Sequence[str], folder: Path, published: Path) -> list[str]:
         if not (folder / beside).exists():
             (folder / beside).symlink_to(DOCS.parent / beside)
     wanted = [pictures()[name] for name in names]
+    for picture in wanted:
+        (folder / picture.made).unlink(missing_ok=True)  # or an old one could pass for what the command has made
     failed = [command for command in dict.fromkeys(one.command for one in wanted) if not run(command, folder)]
     for picture in wanted:
-        if picture.command not in failed:
+        if (folder / picture.made).exists():
             publish(picture, folder, published)
+        elif picture.command not in failed:
+            failed.append(picture.command)
     return failed
 
 

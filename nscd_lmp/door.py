@@ -274,10 +274,11 @@ class _Door:
 
     def after_run(self) -> None:
         """Raise what stopped the run; warn of what its steps may be taken for and are not."""
+        remarks = self.fix.take_remarks()
         if self.fix.failed:
             self.methods["command"]("timer timeout off")
             self.fix.raise_failure()
-        for remark in self.fix.take_remarks():
+        for remark in remarks:
             warnings.warn(remark, stacklevel=4)
 
     def detach(self) -> None:

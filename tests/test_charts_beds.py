@@ -88,7 +88,7 @@ def test_a_bed_on_springs_sinks_by_what_carries_it(tmp_path: Path) -> None:
     mass = beds.DENSITY * 4 / 3 * np.pi * 0.5e-3**3
     assert soft["overlap_max"] < mass * beds.GRAVITY / 1e3 / 0.5e-3 * 1.05
     assert soft["overlap_max"] > 0.5 * mass * beds.GRAVITY / 1e3 / 0.5e-3
-    assert rigid["sinking"] < 1e-3 * soft["sinking"]
+    assert rigid["packing"] < 1e-3 * soft["packing"]
     assert rigid["imbalance"] < 0.01
 
 

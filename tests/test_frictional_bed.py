@@ -57,7 +57,7 @@ def test_velocities_of_a_shaken_bed_are_those_of_the_reference(
     start, beds, references, solver, law, dim, scene, e, e_t
 ):
     # The heap is the bed without its sides. Velocities need not be unique (test_coulomb.py, test_frictional_piles.py):
-    # of 72 beds shaken like these two had several solutions, discs under law moreau, each of them right to 1e-13
+    # most beds have several solutions for one of the laws or scenes, each of them right to 1e-13; these two have not
     balls = shaken(beds[dim], {"rest": 0.0, "box": 0.1, "heap": 1.0}[scene], dim)
     options: dict[str, Any] = {"law": law, "restitution": e, "e_t": e_t, "walls": walls(dim, sides=scene != "heap")}
     key = (dim, law, scene, e)
@@ -141,7 +141,9 @@ def test_turned_bed_moves_turned(start, beds, solver, angle):
     for turn in (0.0, angle):
         balls, matrix = turned(bed, turn)
         planes = [nscd_lmp.Plane(wall.point @ matrix, wall.normal @ matrix, wall.friction) for wall in walls(3)]
-        velocity, _ = one_step(start, balls, 3, solver=solver, law="gap", walls=planes)
+        velocity, attached = one_step(start, balls, 3, solver=solver, law="gap", walls=planes)
+        if solver == "interior_point" and attached.stats["unconverged_steps"][0]:
+            pytest.xfail("the central path folds before the solution, and the step is reported as unconverged")
         ends.append((velocity.reshape(-1, 3) @ matrix.T).ravel())
     # contacts come in another order; no tangent is preferred, or the error would be that of the slip, 0.1
     np.testing.assert_allclose(ends[0], ends[1], rtol=0, atol=1e-10)

@@ -93,6 +93,22 @@ def test_each_run_tells_of_its_own_steps(run, door):
 
 
 @pytest.mark.parametrize("door", DOORS)
+def test_a_run_in_parts_and_a_script_of_runs_tell_of_all_steps(run, door, tmp_path):
+    # the script brings the ball to rest after a step in which it moved by three radii
+    (tmp_path / "in.runs").write_text("run 1\nvelocity all set 0 0 1\nrun 3\n")
+    script = [f"include {tmp_path / 'in.runs'}"]
+    assert len([told for told in run(passing, door, script) if "move by up to 3 " in told]) == 1
+    parts = run(passing, door, ['run 4 every 1 "velocity all set 0 0 1"'])
+    assert len([told for told in parts if "move by up to 3 " in told]) == 1
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_steps_that_were_misjudged_are_told_where_unconverged_ones_are_errors(run, door):
+    (told,) = run(misjudged, door, ["run 1"], unconverged="error")
+    assert "use criterion natural" in told
+
+
+@pytest.mark.parametrize("door", DOORS)
 def test_ignore_is_about_what_solvers_leave(run, door):
     assert run(misjudged, door, ["run 1"], unconverged="ignore") == []
     assert run(unsolved, door, ["run 1"], unconverged="ignore") == []

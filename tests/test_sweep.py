@@ -166,9 +166,12 @@ def test_command_is_interrupted_by_ctrl_c(script):
         [*PROGRAM, "sweep", script, "--vary", "then=nothing,forever", "--folder", "out"],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
-    sweep_cases.wait_for(lambda: Path("out/then=forever/dump.last").exists(), "the second case")
-    process.send_signal(signal.SIGINT)
-    _, err = process.communicate(timeout=20)
+    try:
+        sweep_cases.wait_for(lambda: Path("out/then=forever/dump.last").exists(), "the second case")
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=20)
+    finally:
+        process.kill()
     assert process.returncode == 130
     assert "interrupted" in err
     assert len(Path("out/sweep.csv").read_text().splitlines()) == 2

@@ -18,6 +18,7 @@ from nscd_lmp.charts import penalty
 
 RIGID, PENALTY = "rigid", "penalty"
 FIX = "nscd"
+NEVER = 10**9  # steps
 FEW = 300  # grains; below, bins for neighbors cost more than looking at all pairs
 
 Friction = float | Literal["stick"]
@@ -176,7 +177,8 @@ def start(
         )
         commands = [*spring.pair(friction), "fix move all nve/sphere", *spring.walls(walls, friction)]
     lmp.command(f"neighbor {0.4 * largest if skin is None else skin!r} {'nsq' if lmp.get_natoms() < FEW else 'bin'}")
-    lmp.command("neigh_modify every 1 delay 0 check yes")
+    # rigid contacts ask for a list themselves; LAMMPS, which cannot know what they need, would build it more often
+    lmp.command(f"neigh_modify every 1 delay {NEVER if chosen.family == RIGID else 0} check yes")
     lmp.commands_list([*commands, f"timestep {case['dt']!r}"])
     return Contacts(lmp, chosen)
 

@@ -70,6 +70,11 @@ class Overlaps:
         depth, smaller = self.look(x)
         return float((depth / smaller).max(initial=0.0))
 
+    def coordination(self, x: Array, near: float) -> float:
+        """Return the contacts a grain, pairs nearer than `near` of the smaller radius, after :meth:`look` at x."""
+        gap = np.linalg.norm(x[self.i] - x[self.j], axis=1) - self.radius[self.i] - self.radius[self.j]
+        return 2 * int((gap < near * np.minimum(self.radius[self.i], self.radius[self.j])).sum()) / len(x)
+
     def _list(self, x: Array) -> None:
         from scipy.spatial import cKDTree  # here: SciPy takes long to import
 

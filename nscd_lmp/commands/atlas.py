@@ -58,7 +58,9 @@ def list_of_maps() -> Table:
 
 def table_of_outcomes(made: list[Made]) -> Table:
     """Return how many cells of each map had which outcome, and how many failed without a word."""
-    table = Table(Column("map", no_wrap=True), *OUTCOMES, "not told")
+    outcomes = [Column(name.replace(" ", "\n"), justify="right") for name in [*OUTCOMES, "not told"]]
+    # narrow, so that no heading is cut where a line has 80 characters
+    table = Table(Column("map", no_wrap=True), *outcomes, box=None, padding=(0, 1, 0, 0), pad_edge=False)
     for one in made:
         counted = Counter(cell["outcome"] for cell in one.cells)
         table.add_row(one.name, *(str(counted[name] or "") for name in OUTCOMES), str(len(one.silent) or ""))

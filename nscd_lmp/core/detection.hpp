@@ -13,8 +13,8 @@ enum class Sought { within_reach, foreseen };
 // state.near. Raises Error for an overlap beyond the smaller radius.
 void detect(State &state, const PairList &pairs, Sought sought);
 
-// Watched candidates that state.displacement would drive more than `slack` (m) into each other become contacts, at the
-// end of state.contacts. Returns how many.
+// Watched candidates that the solution drives more than `slack` (m) into each other, by state.displacement or by dt
+// times the bodies' velocities, become contacts, at the end of state.contacts. Returns how many.
 std::size_t promote_near(State &state, double slack);
 
 }    // namespace nscd

@@ -17,9 +17,24 @@ template <class... Parts>
 std::string sentence(const Parts &...parts)
 {
   std::ostringstream text;
-  text.precision(2);
   (text << ... << parts);
   return text.str();
+}
+
+// Two digits of what was measured.
+std::string rounded(double value)
+{
+  std::ostringstream text;
+  text.precision(2);
+  text << value;
+  return text.str();
+}
+
+std::string told_unconverged(const Settings &s, long unconverged, long steps)
+{
+  const std::string bounds = s.overlap ? sentence(*s.tol, " or overlap ", *s.overlap) : sentence(*s.tol);
+  return sentence(unconverged, " of ", steps, " steps ended above tol ", bounds, ": raise maxiter (now ", s.maxiter,
+                  s.overlap ? "), tol or overlap" : ") or tol");
 }
 
 }    // namespace
@@ -39,22 +54,20 @@ void Remarks::add(const StepReport &r)
 std::vector<std::string> Remarks::take(const Settings &s, bool looks_ahead)
 {
   std::vector<std::string> said;
-  const bool of_solver = s.unconverged == Unconverged::warn;
-  if (of_solver && unconverged_ > 0)
-    said.push_back(sentence(unconverged_, " of ", steps_, " steps ended above tol ", *s.tol, ": raise maxiter (now ",
-                            s.maxiter, ") or tol"));
+  const bool of_solver = s.unconverged != Unconverged::ignore;
+  if (of_solver && unconverged_ > 0) said.push_back(told_unconverged(s, unconverged_, steps_));
   if (of_solver && misjudged_ > 0 && s.criterion == Stop::paper)
     said.push_back(sentence(misjudged_, " of ", steps_, " steps met tol ", *s.tol, " of criterion (42) with ",
-                            "velocities that are off by up to ", worst_residual_, " of what a step changes: use ",
-                            "criterion natural, or a smaller tol"));
+                            "velocities that are off by up to ", rounded(worst_residual_), " of what a step changes: ",
+                            "use criterion natural, or a smaller tol"));
   if (overlap_ratio_ > std::max(overlap_worth_saying, s.overlap.value_or(0)))
-    said.push_back(sentence("grains overlap by up to ", overlap_ratio_, " of the smaller radius: ",
+    said.push_back(sentence("grains overlap by up to ", rounded(overlap_ratio_), " of the smaller radius: ",
                             looks_ahead ? "start without overlap, lower tol, or move obstacles by less a step"
                                         : "use law gap or a smaller timestep"));
   if (!looks_ahead && move_ratio_ > move_worth_saying)
-    said.push_back(sentence("grains move by up to ", move_ratio_, " of the smallest radius in a step, and law ", s.law,
-                            " does not see them pass each other: use law gap or a smaller timestep"));
-  begin();
+    said.push_back(sentence("grains move by up to ", rounded(move_ratio_), " of the smallest radius in a step, and ",
+                            "law ", s.law, " does not see them pass each other: use law gap or a smaller timestep"));
+  *this = {};
   return said;
 }
 

@@ -12,7 +12,6 @@ struct StepReport;
 
 class Remarks {
  public:
-  void begin() { *this = {}; }
   void add(const StepReport &report);
   // A sentence, with its remedy, for each thing worth saying of the steps added since the last call. `looks_ahead`: as
   // the contact law does.

@@ -61,7 +61,8 @@ void parse_keywords(Settings &settings, const std::vector<std::string> &words);
 // A single contact of a solved step misses the mean criterion by about so many times `tol`.
 constexpr double tolerances = 10;
 
-// A relative residual beyond which velocities are not to be trusted, whatever the criterion says.
+// A residual over the velocities that matter, be it those that contacts have to stop or those that a step adds, beyond
+// which what is solved is not to be trusted, whatever the criterion says.
 constexpr double residual_worth_saying = 0.1;
 
 // rho or gamma, whichever the solver takes, as a multiple of 1/W_nn; 0 if it takes none.

@@ -26,7 +26,8 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
     law_(find_law(settings_.law).make()), state_{.settings = settings_, .grains = {}, .dimension = dimension},
     halo_(ranks && ranks->count() > 1 ? std::make_unique<Halo>(*ranks) : nullptr),
     team_(settings_.threads > 1 ? std::make_unique<Team>(settings_.threads) : nullptr),
-    sought_(law_->resolves_impacts(settings_) || custom_ || !solver_->ranks ? Sought::within_reach : Sought::foreseen),
+    sought_(law_->looks_ahead() && !law_->resolves_impacts(settings_) && !custom_ && solver_->ranks
+                ? Sought::foreseen : Sought::within_reach),
     prediction_(law_->prediction(settings_)), look_ahead_(law_->looks_ahead() ? 1 : 0),
     crowding_(nscd::crowding(settings_.threads, ranks))
 {
@@ -44,7 +45,6 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
 void Step::begin_run(bool list_just_built)
 {
   report_ = {};
-  remarks_.begin();
   if (list_just_built) list_.expect_new_list();
 }
 
@@ -203,7 +203,9 @@ bool Step::solve_part(const Part &part, int maxiter)
 void Step::judge()
 {
   const double residual = report_.criterion.relative * free_norm_;  // m/s, the 2-norm
-  report_.residual_ratio = residual > 0 ? residual / (std::sqrt(double(report_.contacts)) * velocity_scale_) : 0;
+  // Without forces a step has no velocity of its own that a residual could be compared with.
+  const bool measurable = residual > 0 && state_.smooth_kick > 0;
+  report_.residual_ratio = measurable ? residual / (std::sqrt(double(report_.contacts)) * velocity_scale_) : 0;
   if (report_.converged) return;
   const bool too_deep = solved(report_.criterion, {.tol = options_.tol, .stop = options_.stop});
   if (settings_.unconverged == Unconverged::error && too_deep)

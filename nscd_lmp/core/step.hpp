@@ -24,7 +24,8 @@ struct StepReport {
   std::int64_t contacts = 0;
   int iterations = 0;
   Criterion criterion;
-  double residual_ratio = 0;         // natural map, root mean square of the contacts, over what velocities are worth
+  double residual_ratio = 0;         // natural map, root mean square of the contacts, over what velocities are worth;
+                                     // 0 where no force acts
   double largest_overlap = 0;        // m, at q_{k+1}
   double largest_overlap_ratio = 0;  // over the smaller radius of the pair
   double largest_move_ratio = 0;     // dt times the fastest grain's speed at the start, over the smallest radius
@@ -62,7 +63,7 @@ class Step {
   bool has_custom_solver() const { return bool(custom_); }
   const State &state() const { return state_; }
   const Halo *halo() const { return halo_.get(); }
-  // What users are to be told of the steps since the run began, or since they were told.
+  // What users are to be told of the steps since they were last told.
   std::vector<std::string> take_remarks() { return remarks_.take(settings_, law_->looks_ahead()); }
   // What users are to be told of threads without cores of their own; empty if there are none.
   const std::string &crowding() const { return crowding_; }

@@ -8,13 +8,14 @@
 namespace nscd {
 
 // A few sweeps, to see which pairs they drive together before more are spent on contacts that are not all there yet.
-// Returns whether they have solved the step.
+// Returns whether they have solved the step. No energy limit: what it looks for, steps that are given up and impacts,
+// is not among them.
 bool Step::sweep_briefly(const Part &part, int sweeps)
 {
   share_among_threads(part.contacts);
   const bool solved = solve_part(part, std::min(sweeps, options_.maxiter));
   report_.converged = true;   // that is not known yet
-  return solved && state_.friction.model == Model::frictionless;
+  return solved;
 }
 
 // Whether some sweeps are likely to make contacts of watched pairs.

@@ -266,6 +266,58 @@ TEST(watched_pairs_join_when_the_solution_drives_them_together)
   }
 }
 
+// Within reach of each other, and apart all the way; solvers to which another round costs as much take them at once.
+TEST(grains_that_fall_side_by_side_are_watched)
+{
+  const std::pair<const char *, int> all[] = {{"solver pdas", 0}, {"solver apgs", 0}, {"solver auto", 0},
+                                              {"solver active_set", 1}, {"restitution 0.5", 1}};
+  for (const auto &[words, contacts] : all) {
+    Scene scene;
+    for (double x : {0.0, 2.4}) scene.add({x, 0, 0}, 1, 1, {0, 0, -5});
+    Step step(settings(std::string("law gap ") + words));
+    CHECK(scene.advance(step, 0.1).contacts == contacts);
+    CHECK(scene.v[2] == -5 && scene.v[5] == -5);
+  }
+}
+
+// The floor brakes the lower grain, and that the upper one, which would have fallen beside it.
+TEST(watched_pairs_within_reach_join_when_one_of_them_is_stopped)
+{
+  for (const char *solver : {"pdas", "apgs", "auto", "active_set"}) {
+    Scene scene;
+    scene.add({0, 0, 1.1}, 1, 1, {0, 0, -5});
+    scene.add({0, 0, 3.45}, 1, 1, {0, 0, -5});
+    Step step(settings(std::string("law gap tol 1e-9 wall plane 0 0 0 0 0 1 solver ") + solver));
+    CHECK(scene.advance(step, 0.1).contacts == 2);
+    CHECK_NEAR(scene.v[2], -1, 1e-7);     // 0.1 above the floor, in 0.1 s
+    CHECK_NEAR(scene.v[5], -4.5, 1e-7);   // 0.35 above the other, which moves by 0.1
+    CHECK(scene.x[5] - scene.x[2] > 2 - 1e-7);
+  }
+}
+
+// One step of a cloud that lands, at once with all pairs within reach and in rounds with those that are foreseen.
+TEST(rounds_with_foreseen_contacts_give_the_velocities_of_all_contacts)
+{
+  for (const char *words : {"", "friction 0.2 "}) {
+    const bool frictional = words[0] != 0;
+    std::vector<double> v[2];
+    std::int64_t contacts[2];
+    const char *solvers[] = {"pdas", frictional ? "interior_point" : "active_set"};
+    for (int k = 0; k < 2; ++k) {
+      Random random(5);
+      Scene scene = random_scene(random, 60, 1, 0.1, 1);
+      for (std::size_t i = 2; i < scene.v.size(); i += 3) scene.v[i] -= 20;
+      Step step(settings("law gap tol 1e-10 maxiter 100000 " + std::string(words) + "solver " + solvers[k] +
+                         box_walls(1, 1)));
+      CHECK(scene.advance(step, 5e-3).converged);
+      v[k] = scene.v;
+      contacts[k] = step.report().contacts;
+    }
+    CHECK(contacts[0] < contacts[1]);
+    for (std::size_t i = 0; i < v[0].size(); ++i) CHECK_NEAR(v[0][i], v[1][i], 1e-7);
+  }
+}
+
 TEST(tangential_and_receding_grains_keep_their_velocity)
 {
   Scene scene;

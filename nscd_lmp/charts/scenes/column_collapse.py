@@ -92,9 +92,7 @@ class Heap(Watch):
         x = super().look(taken)
         self.spreads.append(float(np.linalg.norm(x[:, :2] - self.axis, axis=1).mean()))
         if self.times[-1] >= self.since:
-            radius, i, j = self.probe.radius, self.probe.i, self.probe.j
-            gap = np.linalg.norm(x[i] - x[j], axis=1) - radius[i] - radius[j]
-            self.contacts.append(2 * int((gap < NEAR * np.minimum(radius[i], radius[j])).sum()) / len(x))
+            self.contacts.append(self.probe.coordination(x, NEAR))
         return x
 
 

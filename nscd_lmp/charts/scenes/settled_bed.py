@@ -10,7 +10,7 @@ import numpy as np
 
 from nscd_lmp.charts.beds import GRAVITY, Scene, Watch, fastest, follow, steps_between_looks
 from nscd_lmp.charts.cases import penalty_cases, rigid_cases
-from nscd_lmp.charts.grains import per_grain
+from nscd_lmp.charts.grains import Array, per_grain
 from nscd_lmp.charts.methods import METHODS, RIGID, rigid_methods
 from nscd_lmp.charts.references import Arrays, kept
 from nscd_lmp.charts.sedimentations import LIGHTEST, Sedimentation, costs
@@ -22,17 +22,21 @@ ERRORS = {
     "overlap_max": "largest overlap / radius",
     "imbalance": "net force on a grain / weight,\nroot mean square",
     "kinetic": "kinetic energy a grain / (m g r)",
-    "sinking": "sinking of the centre of mass\n/ radius",
+    "packing": "packing fraction,\nrelative error",
+    "coordination": "contacts a grain,\nrelative error",
 }
 NOTES = """A bed settled by law gap (dt 5e-4 s, tol 1e-8, 1 s) runs on for 0.05 s. Net force: weight and contact
 forces (of rigid contacts the mean of the step), over the weight; it and the kinetic energy are means over the last
 0.02 s; the overlap is the largest of the whole run. Without friction a bed creeps on, and the finest rigid runs
-show that creep. Penalty contacts start without overlap, and sink until their springs carry the weight. Seconds are
-processor seconds of the one thread, best of 2."""
+show that creep. Penalty contacts start without overlap, and sink until their springs carry the weight. Packing
+fraction: volume of the grains over that of the box up to twice the height of their centre of mass; contacts: pairs
+nearer than 1e-4 of the radius; both at the end against the start. Seconds are processor seconds of the one thread,
+best of 2."""
 
 SIMULATED, WATCHED = 0.05, 0.02  # s
 SETTLING: dict[str, Any] = {"method": "gap/apgs", "dt": 5e-4, "tol": 1e-8}
 SETTLED = {500: 1.0, 60: 0.1}  # s
+NEAR = 1e-4  # of the smaller radius: such pairs count as contacts
 STIFFNESSES = (1e2, 1e3, 1e4, 1e5)  # N/m
 
 
@@ -87,6 +91,12 @@ class Rest(Watch):
         return x
 
 
+def coordination(watch: Watch, x: Array) -> float:
+    """Return the contacts a grain at the places x."""
+    watch.probe.look(x)
+    return watch.probe.coordination(x, NEAR)
+
+
 def run(folder: Path, **case: Any) -> dict[str, Any]:
     """Run a case: watched, then timed."""
     grains = case["grains"]
@@ -98,7 +108,7 @@ def run(folder: Path, **case: Any) -> dict[str, Any]:
     watch = Rest(contacts, scene.walls, case["dt"])
     watch.begin(METHODS[case["method"]].family == RIGID, SIMULATED - WATCHED)
     watched = follow(contacts, steps, steps_between_looks(case, LIGHTEST, steps), watch.look)
-    totals = contacts.totals()
+    totals, end = contacts.totals(), per_grain(contacts.lmp, "x")
     contacts.lmp.close()
     seconds = fastest(lambda: scene.begin(folder, case), steps, 2)
     found = watch.overlaps()
@@ -108,6 +118,7 @@ def run(folder: Path, **case: Any) -> dict[str, Any]:
         **found,
         "imbalance": float(np.sqrt(np.mean(watch.imbalance))),
         "kinetic": float(np.mean(watch.kinetic)),
-        "sinking": float(abs(state["x"][:, 2].mean() - watch.heights[-1]) / watch.probe.radius.mean()),
+        "packing": float(abs(state["x"][:, 2].mean() / watch.heights[-1] - 1)),
+        "coordination": abs(coordination(watch, end) / coordination(watch, state["x"]) - 1),
         **costs(seconds, watched, totals, SIMULATED, steps),
     }
