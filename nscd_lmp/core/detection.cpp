@@ -62,11 +62,16 @@ NSCD_INLINE double gap_of(const Sphere &a, const Sphere &b)
   return std::sqrt(dot(separation, separation)) - a.radius - b.radius;
 }
 
+// So that near[count] may be written; most scenes watch few pairs, and those that watch many come to hold them once.
+NSCD_INLINE void make_room(std::vector<Watched> &near, std::size_t count)
+{
+  if (count >= near.size()) near.resize(std::max(near.capacity(), 2 * count + 64));
+}
+
 // Sorts what was found into contacts-to-be and watched pairs, without branching on which it is.
 NSCD_HOT void sort_pairs(State &s, const PairList &pairs)
 {
   s.touching.resize(s.found_count);
-  s.near.resize(s.found_count);
   std::size_t touching = 0, near = 0;
   for (std::size_t k = 0; k < s.found_count; ++k) {
     const Candidate c = s.found[k];
@@ -74,11 +79,13 @@ NSCD_HOT void sort_pairs(State &s, const PairList &pairs)
     const Sphere &a = s.spheres[c.atom_i], &b = s.spheres[c.atom_j];
     const double gap = gap_of(a, b);
     const bool reaches = !(gap > a.reach + b.reach);   // not-a-number does, and is refused
+    make_room(s.near, near);
     s.touching[touching] = c;
     s.near[near] = {c, gap};
     touching += reaches;
     near += !reaches;
   }
+  make_room(s.near, near);
   s.touching.resize(touching);
   s.near.resize(near);
 }
@@ -88,7 +95,6 @@ NSCD_HOT void watch_unforeseen(State &s)
 {
   const Foresight foresight(s);
   const std::size_t watched = s.near.size(), count = s.touching.size();
-  s.near.resize(watched + count);
   std::size_t kept = 0, doubted = watched;
   for (std::size_t k = 0; k < count; ++k) {
     const Candidate c = s.touching[k];
@@ -97,11 +103,13 @@ NSCD_HOT void watch_unforeseen(State &s)
     const double distance = std::sqrt(dot(separation, separation)), gap = distance - a.radius - b.radius;
     const Vec4 closing = s.bodies[s.owner[c.atom_i]] - s.bodies[s.owner[c.atom_j]];
     const bool meets = foresight.meets(gap, a.reach + b.reach, dot(separation, closing) / distance);
+    make_room(s.near, doubted);
     s.touching[kept] = c;
     s.near[doubted] = {c, gap};
     kept += meets;
     doubted += !meets;
   }
+  make_room(s.near, doubted);
   s.touching.resize(kept);
   s.near.resize(doubted);
   s.unforeseen = doubted - watched;

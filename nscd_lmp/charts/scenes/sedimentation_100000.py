@@ -42,7 +42,7 @@ def cases(size: Size) -> list[dict[str, Any]]:
         *soft(3e3, 3e5),
         *rigid("gap/apgs", [2.5e-4, 5e-4, 1e-3], [5e-3, 5e-4], tol=1e-5),
         *soft(5e3, 1e5),
-        *rigid("gap/apgs", [2.5e-4, 5e-4], [9e-3], tol=1e-4),
+        *rigid("gap/apgs", [5e-4], [9e-3, 9e-4], tol=1e-5),
         *rigid_cases(["gap/apgs"], [5e-4], [1e-6], grains=100_000),
         *soft(1e4),
         *rigid("gap/auto", [5e-4], [5e-4]),
