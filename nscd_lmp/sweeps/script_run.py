@@ -60,7 +60,7 @@ def run_script(
         message = _evaluate(lmp, formulas, results)
     try:
         results |= {name: value for name, value in _nscd(lmp).items() if name not in formulas}
-    except Exception as error:
+    except Exception as error:  # LAMMPS raises no other type
         message = message or f"results of fix nscd: {_first_line(error)}"
     lmp.close()
     return results, seconds, message
@@ -73,7 +73,7 @@ def _evaluate(lmp: Any, formulas: Mapping[str, str], results: Results) -> str:
         try:
             lmp.command(f'variable {FORMULA} equal "{formula}"')
             results[name] = float(lmp.extract_variable(FORMULA))
-        except Exception as error:
+        except Exception as error:  # LAMMPS raises no other type
             results[name] = None
             message = message or f"result '{formula}': {_first_line(error)}"
     return message
