@@ -5,6 +5,8 @@
 // and obstacles (walls, atoms outside the group) are bodies of infinite mass, so the loop has no branches.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -47,7 +49,14 @@ struct ContactInfo {
   double speed_before;  // n.(v_i - v_j) at the start of the step, m/s
   std::uint64_t key;    // identifies the contact across steps
   std::int32_t atom_i, atom_j;  // as in Candidate
+  double radius;        // of the smaller grain, m
+  double kick;          // what the smooth forces change of its grains' velocities, the larger of the two, m/s
+  double free2;         // square of its velocity without impulses, biases and slip included, (m/s)^2
 };
+
+// What the velocities of a contact are worth, m/s: what forces give its grains in a step or, where none act, a small
+// part of the speed at which they meet.
+inline double worth(const ContactInfo &info) { return std::max(info.kick, 1e-3 * std::abs(info.speed_before)); }
 
 inline double dot(const Vec4 &a, const Vec4 &b)
 {

@@ -2,9 +2,11 @@
 
 #include "across_threads.hpp"
 #include "carried_velocity.hpp"
+#include "closer_look.hpp"
 #include "frame.hpp"
 #include "halo.hpp"
 #include "hot.hpp"
+#include "natural_map.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,9 +29,7 @@ struct Sums {
   {
     of.bipotential += w * std::max(0.0, -p);
     of.penetration += std::max(-v, 0.0);  // this order of arguments lets NaN through
-    of.approach = std::max(of.approach, -v);
-    // w (p - max(0, p - v / w)) without cancellation, and v if that is no number.
-    const double residual = w * p < v ? w * p : v;
+    const double residual = natural_normal(w, p, v);
     natural += residual * residual;
   }
 
@@ -49,9 +49,7 @@ struct Sums {
     const double radius = coulomb_radius(own.mu, p.n);
     if (std::isinf(own.mu)) of.bipotential += std::abs(v.n * p.n);
     else of.bipotential += std::abs(v.n * p.n + inner(v.t, p.t) + radius * length(v.t));
-    const Tangent trial = p.t - v.t * (1 / own.wt);
-    const bool sticks = inner(trial, trial) <= radius * radius;
-    const double residual = sticks ? length(v.t) : own.wt * length(p.t - onto_ball<Tangent>(trial, radius));
+    const double residual = natural_tangential(own.wt, radius, p.t, v.t);
     of.bipotential += tangential_scale * residual;
     natural += residual * residual;
   }
@@ -61,6 +59,11 @@ struct Sums {
   {
     const Split<Tangent> off{own.n - v.n, own.t - v.t};
     of.motion += std::sqrt(off.n * off.n + inner(off.t, off.t));
+  }
+
+  NSCD_INLINE void add_approach(double v, double per_approach)
+  {
+    of.approach = std::max(of.approach, -v * per_approach);
   }
 
   void add(const Sums &other)
@@ -82,6 +85,7 @@ struct Sums {
     // If nothing drives the contacts, what start impulses have left over is all there is: 1.
     const bool residual = !(natural <= double(contacts) * round_off * round_off);  // NaN is one
     if (residual) of.relative = free_norm > 0 ? std::sqrt(natural) / free_norm : 1;
+    of.island = of.relative;
     return of;
   }
 };
@@ -90,11 +94,13 @@ NSCD_HOT Sums frictionless(const Problem &problem, const Range &range, const dou
 {
   Sums sum;
   const Body *bodies = problem.bodies.data();
+  const double *const per_approach = problem.per_approach.data();
   for (std::size_t k = range.first; k < range.last; ++k) {
     const Contact &c = problem.contacts[k];
     fetch_bodies(problem.contacts[std::min(k + fetch_ahead, range.last - 1)], bodies);
     const double v = normal_velocity(c, bodies) + c.bias;
     sum.add_frictionless(1 / c.w_inverse, c.impulse, v);
+    if (per_approach) sum.add_approach(v, per_approach[k]);
     if (local_velocity) sum.of.motion += std::abs(local_velocity[k] - v);
   }
   return sum;
@@ -108,6 +114,7 @@ NSCD_HOT Sums frictional(const Problem &problem, const Range &range, const doubl
   const auto *slides = problem.sliding.template slides<M>();
   const double response = problem.sliding.spin_response;
   const double tangential_scale = (1 + problem.restitution) / (1 + problem.sliding.restitution);
+  const double *const per_approach = problem.per_approach.data();
   for (std::size_t k = range.first; k < range.last; ++k) {
     const Contact &c = problem.contacts[k];
     const auto &slide = slides[k];
@@ -115,6 +122,7 @@ NSCD_HOT Sums frictional(const Problem &problem, const Range &range, const doubl
     const Split<Tangent> v{bare.n + c.bias, bare.t + bias(slide)};
     const Own own{1 / c.w_inverse, c.w_inverse, (1 + response) / c.w_inverse, slide.mu};
     sum.add_frictional<Tangent>(own, {c.impulse, slide.impulse}, v, tangential_scale);
+    if (per_approach) sum.add_approach(v.n, per_approach[k]);
     if (local_velocity)
       sum.add_motion(load_carried<Tangent>(local_velocity + k * carried_doubles<Tangent>), v);
   }
@@ -130,6 +138,7 @@ NSCD_HOT Sums global(const GlobalProblem &problem, const double *u, const double
   for (std::size_t k = 0; k < problem.contacts(); ++k) {
     const auto p = F::load(problem.p.data() + k * F::dim), v = F::load(u + k * F::dim);
     const Diagonal &d = problem.diagonals[k];
+    if (!problem.per_approach.empty()) sum.add_approach(v.n, problem.per_approach[k]);
     if (d.w == 0) {  // nothing moves: what there is to see is whether it penetrates
       sum.of.penetration += std::max(-v.n, 0.0);
       sum.natural += std::pow(std::min(v.n, 0.0), 2);
@@ -171,6 +180,11 @@ Sums sum_of(const Problem &problem, const double *local_velocity)
 
 }    // namespace
 
+bool is_met_by_sums(const Criterion &criterion, const Goal &goal)
+{
+  return (goal.stop == Stop::paper ? criterion.total() : criterion.relative) < goal.tol;
+}
+
 Criterion measure(const Problem &problem, const double *local_velocity)
 {
   Sums sum = sum_of(problem, local_velocity);
@@ -178,9 +192,12 @@ Criterion measure(const Problem &problem, const double *local_velocity)
                    double(problem.contacts.size())};
   if (problem.halo) problem.halo->sum(sums);
   double approach = sum.of.approach;
-  if (problem.halo && problem.approach_matters) problem.halo->max({&approach, 1});
-  sum = {{sums[0], sums[1], sums[2], 0, approach}, sums[3]};
-  return sum.mean(std::size_t(sums[4]), problem.restitution, problem.free_norm, problem.round_off);
+  if (problem.halo && problem.judges_contacts) problem.halo->max({&approach, 1});
+  sum = {{sums[0], sums[1], sums[2]}, sums[3]};
+  sum.of.approach = approach;
+  Criterion seen = sum.mean(std::size_t(sums[4]), problem.restitution, problem.free_norm, problem.round_off);
+  if (problem.judges_contacts && approach <= 1 && is_met_by_sums(seen, problem.goal)) look_closer(problem, seen);
+  return seen;
 }
 
 Criterion measure(const GlobalProblem &problem, const double *u, const double *local_velocity)

@@ -15,6 +15,7 @@
 // (42) adds m/s and N m, so it means nothing across scales. Reported beside it is the natural map used in
 // the FCLIB comparisons (Acary, Bremond, Huber 2018), in velocities:
 //   relative = || W_nn (p - max(0, p - v/W_nn)),  W_tt (p_t - proj(...)) ||_2 / || v_free ||_2.
+// A sum says nothing of a single contact: closer_look.hpp.
 #pragma once
 
 #include "global_problem.hpp"
@@ -22,14 +23,23 @@
 
 namespace nscd {
 
+// By the natural map no contact of a solved problem is off by more than this share of what it has at stake.
+constexpr double off_of_solved = 0.1;
+
 struct Criterion {
   double motion = 0;
   double bipotential = 0;
   double penetration = 0;
   double relative = 0;
-  double approach = 0;  // m/s, the fastest of the contacts, biases included
+  double island = 0;    // not below `relative`; with the next two, closer_look.hpp
+  double worst = 0;
+  double typical = 0;
+  double approach = 0;  // a contact's -v_n over what may be left of it, the largest
   double total() const { return motion + bipotential + penetration; }
 };
+
+// Whether the sums over all contacts meet the goal, whatever single contacts or islands do.
+bool is_met_by_sums(const Criterion &criterion, const Goal &goal);
 
 // `local_velocity`: the (1 + e) v~ that a local solver carries, one a contact (with friction as carried_velocity.hpp
 // lays them out), or nullptr if it carries none.

@@ -155,6 +155,7 @@ AssembledProblem::AssembledProblem(const Problem &grains) :
   problem_.q = q_;
   problem_.mu = mu_;
   problem_.p = p_;
+  problem_.per_approach = grains.per_approach;
   problem_.restitution = grains.restitution;
   problem_.restitution_t = grains.sliding.restitution;
 }

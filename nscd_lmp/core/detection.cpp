@@ -14,12 +14,11 @@ constexpr double near_share = 0.25;
 // What is foreseen of a step by free velocities.
 struct Foresight {
   double dt;
-  double always;   // m: smooth forces may close such a gap
 
-  explicit Foresight(const State &s) : dt(s.dt), always(2 * s.dt * s.smooth_kick) {}
-  // `rate`: of the gap, m/s.
-  bool meets(double gap, double reach, double rate) const
+  // `rate`: of the gap, m/s; `kick`: of the grain that forces change more, m/s.
+  bool meets(double gap, double reach, double rate, double kick) const
   {
+    const double always = 2 * dt * kick;   // smooth forces may close such a gap
     return !(gap + dt * std::min(rate, 0.0) > near_share * reach + always);   // not-a-number meets, and is refused
   }
 };
@@ -93,7 +92,7 @@ NSCD_HOT void sort_pairs(State &s, const PairList &pairs)
 // Those of the contacts-to-be that are not foreseen are watched instead.
 NSCD_HOT void watch_unforeseen(State &s)
 {
-  const Foresight foresight(s);
+  const Foresight foresight{s.dt};
   const std::size_t watched = s.near.size(), count = s.touching.size();
   std::size_t kept = 0, doubted = watched;
   for (std::size_t k = 0; k < count; ++k) {
@@ -101,8 +100,9 @@ NSCD_HOT void watch_unforeseen(State &s)
     const Sphere &a = s.spheres[c.atom_i], &b = s.spheres[c.atom_j];
     const Vec4 separation = a.centre - b.centre;
     const double distance = std::sqrt(dot(separation, separation)), gap = distance - a.radius - b.radius;
-    const Vec4 closing = s.bodies[s.owner[c.atom_i]] - s.bodies[s.owner[c.atom_j]];
-    const bool meets = foresight.meets(gap, a.reach + b.reach, dot(separation, closing) / distance);
+    const int i = s.owner[c.atom_i], j = s.owner[c.atom_j];
+    const double rate = dot(separation, s.bodies[i] - s.bodies[j]) / distance;
+    const bool meets = foresight.meets(gap, a.reach + b.reach, rate, std::max(s.kicks[i], s.kicks[j]));
     make_room(s.near, doubted);
     s.touching[kept] = c;
     s.near[doubted] = {c, gap};
@@ -164,10 +164,61 @@ void measure_moves(State &s)
 }
 
 // Whether the moves are long enough: next to nothing to ask, and nearly always no.
-NSCD_INLINE bool may_meet(const State &s, const Watched &near, double slack)
+NSCD_INLINE bool may_meet(const State &s, const Watched &near)
 {
   const double other = is_wall(near.pair) ? 0 : s.moved[s.owner[near.pair.atom_j]];
-  return near.gap + slack <= 1.0000001 * (s.moved[s.owner[near.pair.atom_i]] + other);
+  return near.gap <= 1.0000001 * (s.moved[s.owner[near.pair.atom_i]] + other);
+}
+
+// Of the two that move farthest, m.
+double sum_of_longest_moves(const State &s)
+{
+  double longest = 0, second = 0;
+  for (const double moved : s.moved) {
+    second = std::max(second, std::min(moved, longest));
+    longest = std::max(longest, moved);
+  }
+  return longest + second;
+}
+
+// Those that filter_pairs left out, by the same expression, and now takes in.
+void watch_pairs_beyond(State &s, const PairList &pairs, double watched)
+{
+  const auto is_within = [&s](int i, int j, double watch) {
+    const Vec4 separation = s.spheres[i].centre - s.spheres[j].centre;
+    const double distance = s.spheres[i].radius + watch + s.spheres[j].radius;
+    return dot(separation, separation) <= distance * distance;
+  };
+  for (int entry = 0; entry < pairs.count; ++entry)
+    for (int k = 0; k < pairs.neighbors[entry]; ++k) {
+      const Candidate c{pairs.atom[entry], pairs.first[entry][k] & neighbor_index_mask};
+      if (!is_within(c.atom_i, c.atom_j, s.watch) || is_within(c.atom_i, c.atom_j, watched)) continue;
+      if (!is_void(s, c, pairs)) s.near.push_back({c, gap_of(s.spheres[c.atom_i], s.spheres[c.atom_j])});
+    }
+}
+
+void watch_wall_beyond(State &s, int wall, double watched)
+{
+  const Height height(s.settings.walls[wall]);
+  for (int i = 0; i < s.grains.owned; ++i) {
+    const double gap = height.of(s.spheres[i].centre) - s.spheres[i].radius;
+    if (gap > watched && gap <= s.watch && s.bodies[i][3] > 0) s.near.push_back({{i, -1 - wall}, gap});
+  }
+}
+
+double smaller_radius(const State &s, const Candidate &c)
+{
+  const double radius = s.spheres[c.atom_i].radius;
+  return is_wall(c) ? radius : std::min(radius, s.spheres[c.atom_j].radius);
+}
+
+// What a solved step would leave of an overlap of the pair if it was a contact, m.
+double left_of_contact(const State &s, const Candidate &c)
+{
+  double kick = s.kicks[s.owner[c.atom_i]];
+  if (!is_wall(c)) kick = std::max(kick, s.kicks[s.owner[c.atom_j]]);
+  const double left = tolerances * tolerance(s, kick) * s.dt;
+  return s.settings.overlap ? std::min(left, *s.settings.overlap * smaller_radius(s, c)) : left;
 }
 
 // The gap once grains have moved by s.displacement.
@@ -181,21 +232,22 @@ double gap_displaced(const State &s, const Candidate &c)
   return std::sqrt(dot(separation, separation)) - a.radius - b.radius;
 }
 
-// gap + dt v_n^{k+1}, which a contact keeps from being negative. Obstacles are where they are at the end of the step.
+// gap + dt v_n^{k+1}, which a contact keeps from being negative.
 double gap_constrained(const State &s, const Watched &near)
 {
   const auto [i, j] = near.pair;
-  const auto velocity = [&s](int body) { return s.bodies[body][3] > 0 ? s.bodies[body] : Body{}; };
-  const Body of_i = velocity(s.owner[i]);
+  const Body of_i = s.bodies[s.owner[i]];
   if (is_wall(near.pair)) return near.gap + s.dt * dot(Height(s.settings.walls[wall_index(near.pair)]).normal, of_i);
   const Vec4 separation = s.spheres[i].centre - s.spheres[j].centre;
-  return near.gap + s.dt * dot(separation, of_i - velocity(s.owner[j])) / std::sqrt(dot(separation, separation));
+  return near.gap + s.dt * dot(separation, of_i - s.bodies[s.owner[j]]) / std::sqrt(dot(separation, separation));
 }
 
-// Whether the pair has to be a contact: it overlaps by more than `slack`, or a contact would not allow its velocities.
-bool is_driven_together(const State &s, const Watched &near, double slack)
+NSCD_INLINE void note_overlap(State &s, const Candidate &c, double overlap)
 {
-  return std::min(gap_displaced(s, near.pair), gap_constrained(s, near)) < -slack;
+  if (overlap <= 0) return;
+  Overlap &largest = s.watched_overlap;
+  largest.length = std::max(largest.length, overlap);
+  largest.ratio = std::max(largest.ratio, overlap / smaller_radius(s, c));
 }
 
 }    // namespace
@@ -210,22 +262,44 @@ void detect(State &state, const PairList &pairs, Sought sought)
   place_contacts(state);
 }
 
-std::size_t promote_near(State &state, double slack)
+void watch_farther(State &state, const PairList &pairs)
+{
+  measure_moves(state);
+  const double longest = sum_of_longest_moves(state);
+  if (longest <= state.watch) return;
+  const double watched = state.watch;
+  state.watch = 1.5 * longest;
+  watch_pairs_beyond(state, pairs, watched);
+  for (int wall = 0; wall < int(state.settings.walls.size()); ++wall) watch_wall_beyond(state, wall, watched);
+}
+
+std::size_t promote_near(State &state)
 {
   const std::size_t before = state.contacts.size();
-  measure_moves(state);
+  state.watched_overlap = {};
   std::size_t kept = 0;
   for (const Watched near : state.near) {
-    if (may_meet(state, near, slack) && is_driven_together(state, near, slack)) {
-      resize_closely(state.contacts, state.contacts.size() + 1);
-      resize_closely(state.infos, state.infos.size() + 1);
-      place_contact(state, state.contacts.size() - 1, near.pair);
-    } else {
-      state.near[kept++] = near;
+    if (may_meet(state, near)) {
+      const double displaced = gap_displaced(state, near.pair);
+      if (std::min(displaced, gap_constrained(state, near)) < -left_of_contact(state, near.pair)) {
+        resize_closely(state.contacts, state.contacts.size() + 1);
+        resize_closely(state.infos, state.infos.size() + 1);
+        place_contact(state, state.contacts.size() - 1, near.pair);
+        continue;
+      }
+      note_overlap(state, near.pair, -displaced);
     }
+    state.near[kept++] = near;
   }
   state.near.resize(kept);
   return state.contacts.size() - before;
+}
+
+void look_at_near(State &state)
+{
+  state.watched_overlap = {};
+  for (const Watched &near : state.near)
+    if (may_meet(state, near)) note_overlap(state, near.pair, -gap_displaced(state, near.pair));
 }
 
 }    // namespace nscd

@@ -13,9 +13,9 @@ namespace {
 // Work that is the solver's own error, J.
 double negligible(const State &s, std::size_t count)
 {
-  double impulses = 0;
-  for (std::size_t k = 0; k < count; ++k) impulses += std::abs(s.contacts[k].impulse);
-  return tolerances * s.tolerance * sum_everywhere(s, impulses);
+  double sum = 0;
+  for (std::size_t k = 0; k < count; ++k) sum += tolerance(s, worth(s.infos[k])) * std::abs(s.contacts[k].impulse);
+  return tolerances * sum_everywhere(s, sum);
 }
 
 void clear_biases(State &s, std::size_t count)

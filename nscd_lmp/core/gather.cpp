@@ -13,6 +13,8 @@ namespace {
 
 // Impulses can make a grain faster than any was: watch pairs within this many moves of the fastest.
 constexpr double watched_moves = 4;
+// Where contacts are not sought ahead, pairs are watched only to see how they overlap at the end of the step.
+constexpr double seen_moves = 2;
 
 struct Search {
   double prediction, look_ahead;
@@ -28,7 +30,8 @@ struct Search {
   fail("grain ", g.tag[i], " has a position, velocity or force that is not a finite number");
 }
 
-// Free velocity (14) and predicted centre (18) of one grain.
+// Free velocity (14) and predicted centre (18) of one atom. LAMMPS has already moved obstacles to where they end the
+// step; they are taken back by dt v.
 NSCD_INLINE void load_body(State &s, int i, const Search &search, Largest &largest)
 {
   const Grains &g = s.grains;
@@ -38,9 +41,12 @@ NSCD_INLINE void load_body(State &s, int i, const Search &search, Largest &large
   const Vec4 before{v[0], v[1], v[2], 0};
   const Vec4 kick = Vec4{f[0], f[1], f[2], 0} * (s.dt * g.force_to_acceleration * inverse_mass);
   const Vec4 free = before + kick;
-  const Vec4 centre = Vec4{x[0], x[1], x[2], 0} + before * (moves ? s.dt * search.prediction : 0.0);
+  const bool has_moved = !moves && !(g.mask[i] & g.later);
+  const Vec4 centre = Vec4{x[0], x[1], x[2], 0} + before * (s.dt * (search.prediction - has_moved));
   const double before2 = dot(before, before), free2 = dot(free, free), speed2 = std::max(before2, free2);
-  largest.kick2 = std::max(largest.kick2, dot(kick, kick));
+  const double kick2 = dot(kick, kick);
+  s.kicks[i] = std::sqrt(kick2);
+  largest.kick2 = std::max(largest.kick2, kick2);
   largest.speed2 = std::max(largest.speed2, speed2);
   largest.smallest_radius = std::min(largest.smallest_radius, g.radius[i]);
   s.spheres[i] = {centre, g.radius[i], s.dt * search.look_ahead * std::sqrt(speed2)};
@@ -66,8 +72,8 @@ void place_images(State &s, const Search &search)
     }
     const Vec4 before = start_velocity(s, i), free = before + smooth_kick(s, i);
     const double speed2 = std::max(dot(before, before), dot(free, free));
-    const bool moves = s.bodies[i][3] > 0;
-    s.spheres[j] = {image + before * (moves ? s.dt * search.prediction : 0.0), g.radius[j],
+    const bool has_moved = s.bodies[i][3] == 0;
+    s.spheres[j] = {image + before * (s.dt * (search.prediction - has_moved)), g.radius[j],
                     s.dt * search.look_ahead * std::sqrt(speed2)};
   }
 }
@@ -78,10 +84,12 @@ NSCD_HOT Largest gather_owned(State &s, double prediction, double look_ahead)
 {
   s.spheres.resize(s.grains.owned + s.grains.ghosts);
   s.bodies.resize(s.moving() + obstacle_copies * s.slabs.count());
+  s.kicks.resize(s.bodies.size());
   s.displacement.resize(s.moving());
   Largest largest;
   for (int i = 0; i < s.grains.owned; ++i) load_body(s, i, {prediction, look_ahead}, largest);
   std::fill(s.bodies.begin() + s.grains.owned, s.bodies.end(), Body{});
+  std::fill(s.kicks.begin() + s.grains.owned, s.kicks.end(), 0.0);
   if (s.friction.model != Model::frictionless) gather_spins(s);
   return largest;
 }
@@ -89,7 +97,8 @@ NSCD_HOT Largest gather_owned(State &s, double prediction, double look_ahead)
 void gather_images(State &s, double prediction, double look_ahead, const Largest &largest)
 {
   s.smooth_kick = std::sqrt(largest.kick2);
-  s.watch = watched_moves * s.dt * look_ahead * std::sqrt(largest.speed2);
+  s.watch = (look_ahead > 0 ? watched_moves : seen_moves) * s.dt * std::sqrt(largest.speed2);
+  for (int c = 0; c < s.copies.count; ++c) s.kicks[s.grains.owned + c] = length(s.copies.kick[c]);
   place_images(s, {prediction, look_ahead});
 }
 

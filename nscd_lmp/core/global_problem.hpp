@@ -27,6 +27,7 @@ struct GlobalProblem {
   double restitution = 0;          // that q contains: scales v in the criterion, as in Problem
   double restitution_t = 0;
   std::vector<Diagonal> diagonals{};  // (n), by find_diagonals()
+  std::span<const double> per_approach{};   // (n) as Problem has it, or empty: any
 
   int dim() const { return w.dim; }
   std::size_t contacts() const { return w.rows(); }

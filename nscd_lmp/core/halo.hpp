@@ -78,6 +78,12 @@ class Halo {
   // Local. Tags that this rank owns since the last plan but not before.
   const std::vector<std::int32_t> &arrivals() const { return arrivals_; }
   std::vector<Letter> deliver(const std::vector<Letter> &out);
+  // Local. f(body) for every body here that contacts of several ranks touch.
+  template <class F>
+  void for_each_shared(F f) const
+  {
+    for (const Shared &shared : shared_) f(shared.body);
+  }
 
  private:
   // What is exchanged with one other rank: bodies that it owns (copies here), and bodies of this rank (copies there).

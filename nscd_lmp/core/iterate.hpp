@@ -57,6 +57,8 @@ class Outlook {
   // `goal`: the correction at which the criterion is about met.
   Outlook(double alternative, double goal) : alternative_(alternative), goal_(goal), end_(first(alternative)) {}
 
+  void aim(double goal) { goal_ = std::min(goal_, goal); }
+
   bool is_worse_than_alternative(double corrected)
   {
     if (alternative_ == 0) return false;
@@ -77,14 +79,34 @@ class Outlook {
   };
   static int first(double alternative) { return std::max(8, int(alternative / 4)); }
 
-  const double alternative_, goal_;
+  const double alternative_;
+  double goal_;
   int sweeps_ = 0, end_;
   Least least_{}, least_before_{};
 };
 
+// When to look again at what single contacts or small islands have left over: it falls about geometrically.
+class Forecast {
+ public:
+  // After a look at sweep s; `excess` is how many times too large the worst of them is.
+  int next(int s, double excess)
+  {
+    const double left = std::log(excess), a_sweep = (left_before_ - left) / (s - before_);
+    const double rest = a_sweep > 0 ? left / a_sweep : INFINITY;
+    left_before_ = left;
+    before_ = s;
+    return s + 1 + int(std::clamp(0.75 * rest - 1, s / 64.0, s / 8.0));
+  }
+
+ private:
+  double left_before_ = INFINITY;
+  int before_ = 0;
+};
+
 // `once()` sweeps and returns the sum over the contacts of the velocity that each visit corrected, m/s; `look()`
 // measures. The criterion costs a pass of its own, so far from convergence it is not taken; close to it the passes are
-// spread so that the count overshoots by < 2 %, and by < 7 % where only SolverOptions::approach is not met.
+// spread so that the count overshoots by < 2 %; where the sums over all contacts are met and only single contacts or
+// islands are not, they come when these are foreseen to be.
 template <class Sweep, class Look>
 SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep once, Look look)
 {
@@ -94,6 +116,7 @@ SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep o
   const double above = surely_above(extent, options);
   Outlook outlook(options.alternative, above / 4);
   RunAway run_away(above);
+  Forecast forecast;
   int next_check = 0;
   report.converged = false;
   for (int s = 1; s <= options.maxiter && !report.converged; ++s) {
@@ -108,9 +131,11 @@ SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep o
     report.ran_away = run_away.has_happened();
     if (options.history) options.history->push_back(report);
     if (last || report.ran_away) break;
-    // Near the mean criterion the largest approach falls slowly.
-    const bool only_deep = judged(report.criterion, options) < options.tol;
-    next_check = s + 1 + s / (only_deep ? 16 : 64);
+    // Where all is well on the whole, an island may be left that is worth less.
+    if (options.stop == Stop::natural && is_met_by_sums(report.criterion, options.goal()))
+      outlook.aim(corrected * options.tol / report.criterion.island);
+    const bool only_some = is_met_by_sums(report.criterion, options.goal());
+    next_check = only_some ? forecast.next(s, excess(report.criterion, options)) : s + 1 + s / 64;
   }
   return report;
 }

@@ -3,21 +3,38 @@
 
 #include "contact.hpp"
 #include "friction.hpp"
+#include "islands.hpp"
 #include "storage.hpp"
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace nscd {
+
+// A contact that does something, as its island sees it: two grains, or a grain twice, and (m/s)^2.
+struct Joined {
+  std::int32_t i, j;
+  double residual2, stake2;
+};
 
 // A solver's own unknowns; kept between steps, so a steady step allocates nothing.
 struct Workspace {
   std::vector<double> numbers{};
   AlignedVector<Vec4> vectors{};
   std::vector<char> marks{};   // of bodies
+  std::vector<Joined> joined{};
+  Islands islands{};
 };
 
-class Halo;
+// What the stopping rule compares `tol` with: criterion (42) in m/s, or the natural map over what velocities are worth.
+enum class Stop { paper, natural };
+
+struct Goal {
+  Stop stop = Stop::paper;
+  double tol = 0;
+};
+
 class Parts;
 class Team;
 
@@ -32,7 +49,13 @@ struct Problem {
   Team *team = nullptr;         // threads; none: the caller's alone
   const Parts *parts = nullptr;   // in which the contacts are ordered, for the team
   double round_off = 0;         // m/s: a residual of less a contact is none
-  bool approach_matters = false;   // whether the criterion has to know that of other ranks
+  // What every contact has at stake, beside the contacts; then each is judged by its own (closer_look.hpp) once the sums
+  // over all have met the goal.
+  std::span<const ContactInfo> infos{};
+  std::span<const double> per_approach{};   // beside the contacts, 1 / the approach that may be left, s/m; or empty: any
+  bool judges_contacts = false;  // whether there are infos; the same on all ranks
+  bool judges_islands = false;
+  Goal goal{};
 };
 
 }    // namespace nscd

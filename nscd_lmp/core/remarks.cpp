@@ -43,9 +43,9 @@ void Remarks::add(const StepReport &r)
 {
   ++steps_;
   unconverged_ += !r.converged;
-  if (r.converged && r.residual_ratio > residual_worth_saying) {
+  if (r.converged && r.criterion.typical > residual_worth_saying) {
     ++misjudged_;
-    worst_residual_ = std::max(worst_residual_, r.residual_ratio);
+    worst_residual_ = std::max(worst_residual_, r.criterion.typical);
   }
   overlap_ratio_ = std::max(overlap_ratio_, r.largest_overlap_ratio);
   move_ratio_ = std::max(move_ratio_, r.largest_move_ratio);

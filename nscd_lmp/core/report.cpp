@@ -21,6 +21,7 @@ double report_column(const StepReport &r, int column)
     case 9: return r.largest_overlap_ratio;
     case 10: return double(r.unconverged);
     case 11: return double(r.energy_limited);
+    case 12: return r.criterion.worst;
   }
   return 0;
 }

@@ -30,7 +30,7 @@ void place_slides(State &s, std::size_t first)
 namespace {
 
 template <class M>
-NSCD_HOT double velocity_norm2_of(const State &s, std::size_t first, std::size_t last)
+NSCD_HOT double keep_free_velocities_of(State &s, std::size_t first, std::size_t last)
 {
   const auto &slides = s.friction.slides<M>();
   double sum = 0;
@@ -38,7 +38,7 @@ NSCD_HOT double velocity_norm2_of(const State &s, std::size_t first, std::size_t
     const auto u = velocity<M>(s.contacts[k], s.bodies.data(), s.friction.spins.data());
     const auto normal = u.n + s.contacts[k].bias;
     const auto slip = u.t + bias(slides[k]);
-    sum += normal * normal + inner(slip, slip);
+    sum += s.infos[k].free2 = normal * normal + inner(slip, slip);
   }
   return sum;
 }
@@ -66,13 +66,13 @@ void set_tangential_bias(State &s, std::size_t first, double e_t)
   });
 }
 
-double velocity_norm(const State &s, std::size_t first, std::size_t last)
+double keep_free_velocities(State &s, std::size_t first, std::size_t last)
 {
   double sum = 0;
-  with_friction(s.friction.model, [&]<class M>(M) { sum = velocity_norm2_of<M>(s, first, last); });
+  with_friction(s.friction.model, [&]<class M>(M) { sum = keep_free_velocities_of<M>(s, first, last); });
   for (std::size_t k = first; k < last && s.friction.model == Model::frictionless; ++k) {
     const double v = normal_velocity(s.contacts[k], s.bodies.data()) + s.contacts[k].bias;
-    sum += v * v;
+    sum += s.infos[k].free2 = v * v;
   }
   return std::sqrt(sum_everywhere(s, sum));
 }

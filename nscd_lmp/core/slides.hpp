@@ -18,9 +18,9 @@ void place_slides(State &state, std::size_t first);
 // Biases e_t u_t of the contacts from `first` on, u_t at the start of the step.
 void set_tangential_bias(State &state, std::size_t first, double e_t);
 
-// 2-norm of the velocities, biases included, of the contacts [first, last), with the bodies as they are, m/s. In a
-// frictionless scene these are the normal ones.
-double velocity_norm(const State &state, std::size_t first, std::size_t last);
+// Keeps the velocities of the contacts [first, last), biases included, with the bodies as they are, as those without
+// impulses (ContactInfo::free2); returns their 2-norm, m/s. In a frictionless scene these are the normal ones.
+double keep_free_velocities(State &state, std::size_t first, std::size_t last);
 
 // Sum of p_t (u_t^k + u_t^{k+1}) over the contacts, J: twice what friction gives to the grains.
 double tangential_work(const State &state);

@@ -2,6 +2,8 @@
 
 #include "registry.hpp"
 
+#include <algorithm>
+
 namespace nscd {
 
 static Registry<SolverEntry> &registry()
@@ -26,12 +28,19 @@ const SolverEntry &find_solver(std::string_view name) { return registry().find("
 
 double judged(const Criterion &criterion, const SolverOptions &options)
 {
-  return options.stop == Stop::paper ? criterion.total() : criterion.relative;
+  return options.stop == Stop::paper ? criterion.total() : std::max(criterion.relative, criterion.island);
 }
 
 bool solved(const Criterion &criterion, const SolverOptions &options)
 {
-  return judged(criterion, options) < options.tol && !(criterion.approach > options.approach);
+  const bool none_is_off = options.stop == Stop::paper || criterion.worst <= off_of_solved;
+  return judged(criterion, options) < options.tol && none_is_off && criterion.approach <= 1;
+}
+
+double excess(const Criterion &criterion, const SolverOptions &options)
+{
+  if (options.stop == Stop::paper) return criterion.approach;
+  return std::max({criterion.approach, criterion.worst / off_of_solved, criterion.island / options.tol});
 }
 
 }    // namespace nscd

@@ -14,9 +14,6 @@
 
 namespace nscd {
 
-// What `tol` is compared with: criterion (42) in m/s, or the natural map over the norm of the free velocities.
-enum class Stop { paper, natural };
-
 struct SolverReport {
   int iterations = 0;
   bool converged = true;
@@ -30,7 +27,7 @@ struct SolverOptions {
   int maxiter = 1000;
   double parameter = 1;  // rho or gamma as a multiple of 1/W_nn
   Stop stop = Stop::paper;
-  double approach = INFINITY;  // m/s: none of the contacts of a solved problem approaches faster
+  Goal goal() const { return {stop, tol}; }
   double alternative = 0;  // sweeps that another solver would cost: give up if more seem to be needed; 0: never
   std::vector<SolverReport> *history = nullptr;  // gets a row whenever the criterion is measured, if given
 };
@@ -38,6 +35,9 @@ struct SolverOptions {
 // What the stopping rule looks at, and whether it is met.
 double judged(const Criterion &criterion, const SolverOptions &options);
 bool solved(const Criterion &criterion, const SolverOptions &options);
+
+// How many times too large the worst contact or island is.
+double excess(const Criterion &criterion, const SolverOptions &options);
 
 struct SolverEntry {
   int order;                    // place in choice lists and legends

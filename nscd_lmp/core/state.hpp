@@ -22,6 +22,11 @@ struct alignas(32) Sphere {
   double reach;
 };
 
+// The largest of pairs: m, and over the smaller radius.
+struct Overlap {
+  double length = 0, ratio = 0;
+};
+
 // What scenes with friction have beside bodies and contacts; empty otherwise.
 struct Friction {
   Model model = Model::frictionless;
@@ -67,10 +72,12 @@ struct State {
   std::vector<std::pair<std::int32_t, int>> own_tags{};   // sorted: tag and index of owned atoms, if there are images
   Copies copies{};
   AlignedVector<Body> bodies{};          // (moving() + obstacle_copies a slab)
+  std::vector<double> kicks{};           // (bodies) |dt f / m| of the step, m/s; obstacles 0
   AlignedVector<Vec4> displacement{};    // (moving()) from where contacts were sought to q_{k+1}
   std::vector<double> moved{};           // (bodies) its length, m; scratch
   std::vector<Contact> contacts{};
   std::vector<ContactInfo> infos{};      // beside contacts
+  std::vector<double> per_approach{};    // beside contacts, 1 / the approach that a solved step may leave, s/m; or empty: any
   std::vector<double> impact_impulse{};  // beside contacts, N s, of impacts resolved ahead of them; or empty
 
   Friction friction{};
@@ -83,10 +90,12 @@ struct State {
   std::size_t unforeseen = 0;            // of those, pairs within reach that free motion does not bring together
   std::vector<Candidate> ordered{};      // scratch
 
+  Overlap watched_overlap{};           // of near, at the end of the step
   double watch = 0;                    // surface distance within which pairs are watched, m
   double smooth_kick = 0;              // largest |dt f / m| of the step, m/s
   double round_off = 0;                // of velocities, m/s
-  double tolerance = 0;                // what a solved step leaves of velocities in error, m/s
+  double tol_of_worth = 0;             // what a solved step leaves of a contact's velocity in error: a share of worth(),
+  double tol_absolute = 0;             // and m/s
 
   // Bodies that are grains, of this rank or copies of others'.
   int moving() const { return grains.owned + copies.count; }
@@ -96,6 +105,9 @@ struct State {
     return moving() + obstacle_copies * slabs.of(i) + int(k % obstacle_copies);
   }
 };
+
+// What a solved step leaves of a contact's velocity in error, m/s.
+inline double tolerance(const State &s, double worth) { return s.tol_of_worth * worth + s.tol_absolute; }
 
 // Over all ranks.
 inline double sum_everywhere(const State &s, double value) { return s.halo ? s.halo->sum(value) : value; }

@@ -1,12 +1,14 @@
 #include "step.hpp"
 
 #include "across_ranks.hpp"
+#include "closer_look.hpp"
 #include "detection.hpp"
 #include "error.hpp"
 #include "gather.hpp"
 #include "hot.hpp"
 #include "plane.hpp"
 #include "slides.hpp"
+#include "approach_bound.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -35,6 +37,7 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
   state_.slabs = Slabs(settings_.threads);
   options_.tol = *settings_.tol;
   options_.stop = *settings_.criterion;
+  (options_.stop == Stop::natural ? state_.tol_of_worth : state_.tol_absolute) = options_.tol;
   options_.maxiter = settings_.maxiter;
   options_.parameter = solver_parameter(settings_, *solver_);
   const Inertia inertia = settings_.inertia.value_or(dimension == 2 ? Inertia::disc : Inertia::sphere);
@@ -54,6 +57,7 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
   if (!(dt > 0 && std::isfinite(dt))) fail("the timestep is ", dt, ": it must be > 0");
   state_.dt = dt;
   state_.grains = grains;
+  pairs_ = &pairs;
   prepare(pairs);
   together([&] { detect(state_, pairs, sought_); });
   solve();
@@ -69,9 +73,6 @@ void Step::together(const std::function<void()> &local)
   if (halo_) halo_->together(local);
   else local();
 }
-
-// What velocities in a scene are worth: those that a step gives, or, where nothing pulls, a small part of the fastest.
-static double velocity_scale(double smooth_kick, double speed) { return std::max(smooth_kick, 1e-3 * speed); }
 
 // From arrays to bodies and spheres, here and of other ranks.
 void Step::prepare(const PairList &pairs)
@@ -100,10 +101,6 @@ void Step::prepare(const PairList &pairs)
   const double speed = std::sqrt(speed2);
   state_.round_off = 1e-14 * speed;
   report_.largest_move_ratio = state_.dt * speed / -smallest;
-  if (settings_.overlap) options_.approach = *settings_.overlap * -smallest / state_.dt;
-  velocity_scale_ = velocity_scale(state_.smooth_kick, speed);
-  state_.tolerance = options_.tol;
-  if (options_.stop == Stop::natural) state_.tolerance *= velocity_scale_;
   require_reach({listed_, moved, longest_move(speed)}, speed);
 }
 
@@ -112,8 +109,9 @@ NSCD_HOT void Step::start_contacts(std::size_t first, bool again)
 {
   law_->set_bias(state_, first);
   set_tangential_bias(state_, first, law_->tangential_restitution_in_bias(settings_));
-  const double added = velocity_norm(state_, first, state_.contacts.size());
+  const double added = keep_free_velocities(state_, first, state_.contacts.size());
   free_norm_ = std::hypot(again ? free_norm_ : 0, added);
+  bound_approach(state_, first);
   if (!settings_.warmstart) return;
   change_across(halo_.get(), state_.bodies, state_.friction.spins.data(), [&] { memory_.recall(state_, first); });
 }
@@ -178,14 +176,19 @@ bool Step::solve_part(const Part &part, int maxiter)
   Problem problem{state_.bodies, contacts, part.e, part.norm, workspace_, sliding(state_, part.e_t),
                   halo_.get()};
   problem.round_off = state_.round_off;
-  problem.approach_matters = settings_.overlap.has_value();
+  problem.infos = std::span(state_.infos).first(part.contacts);
+  if (settings_.overlap) problem.per_approach = std::span(state_.per_approach).first(part.contacts);
+  problem.judges_contacts = true;
+  problem.judges_islands = options_.stop == Stop::natural;
+  problem.goal = options_.goal();
   if (shared_among_threads_) {
     problem.team = team_.get();
     problem.parts = &state_.slabs.parts();
   }
   SolverOptions options = options_;
   options.maxiter = maxiter;
-  const SolverReport solved = solve_problem(problem, options);
+  SolverReport solved = solve_problem(problem, options);
+  if (!solved.converged) look_closer(problem, solved.criterion);
   report_.seconds_solver += seconds(start, Clock::now());
   if (!std::isfinite(solved.criterion.total()))
     fail("solver ", settings_.solver,
@@ -202,21 +205,20 @@ bool Step::solve_part(const Part &part, int maxiter)
 
 void Step::judge()
 {
-  const double residual = report_.criterion.relative * free_norm_;  // m/s, the 2-norm
-  // Without forces a step has no velocity of its own that a residual could be compared with.
-  const bool measurable = residual > 0 && state_.smooth_kick > 0;
-  report_.residual_ratio = measurable ? residual / (std::sqrt(double(report_.contacts)) * velocity_scale_) : 0;
+  const Criterion &seen = report_.criterion;
   if (report_.converged) return;
-  const bool too_deep = solved(report_.criterion, {.tol = options_.tol, .stop = options_.stop});
-  if (settings_.unconverged == Unconverged::error && too_deep)
-    fail("step not solved: a contact approaches at ", report_.criterion.approach, " after ", report_.iterations,
-         " iterations, overlap ", *settings_.overlap, " allows ", options_.approach,
-         ": raise maxiter or overlap, or use `unconverged warn`");
-  if (settings_.unconverged == Unconverged::error)
-    fail("step not solved: criterion ", options_.stop == Stop::paper ? "(42)" : "natural", " is ",
-         judged(report_.criterion, options_), " after ", report_.iterations,
-         " iterations, tol is ", options_.tol, ": raise maxiter or tol, or use `unconverged warn`");
   ++report_.unconverged;
+  if (settings_.unconverged != Unconverged::error) return;
+  const std::string_view remedy = "use `unconverged warn`";
+  if (judged(seen, options_) >= options_.tol)
+    fail("step not solved: criterion ", options_.stop == Stop::paper ? "(42)" : "natural", " is ",
+         judged(seen, options_), " after ", report_.iterations, " iterations, tol is ", options_.tol,
+         ": raise maxiter or tol, or ", remedy);
+  if (seen.approach > 1)
+    fail("step not solved: after ", report_.iterations, " iterations a contact approaches ", seen.approach,
+         " times as fast as overlap ", *settings_.overlap, " allows: raise maxiter or overlap, or ", remedy);
+  fail("step not solved: after ", report_.iterations, " iterations a contact is off by ", seen.worst,
+       " of what its velocity is worth, more than ", off_of_solved, ": raise maxiter, or ", remedy);
 }
 
 }    // namespace nscd

@@ -24,8 +24,6 @@ struct StepReport {
   std::int64_t contacts = 0;
   int iterations = 0;
   Criterion criterion;
-  double residual_ratio = 0;         // natural map, root mean square of the contacts, over what velocities are worth;
-                                     // 0 where no force acts
   double largest_overlap = 0;        // m, at q_{k+1}
   double largest_overlap_ratio = 0;  // over the smaller radius of the pair
   double largest_move_ratio = 0;     // dt times the fastest grain's speed at the start, over the smallest radius
@@ -83,7 +81,6 @@ class Step {
   void start_contacts(std::size_t first, bool again);
   void begin_rounds();
   void solve();
-  double left_of_contacts() const;
   bool promote();
   void resolve_impacts_first(bool again);
   void judge();
@@ -112,6 +109,7 @@ class Step {
   const std::unique_ptr<Halo> halo_;   // none on one rank
   const std::unique_ptr<Team> team_;   // none on one thread
   ListGuard list_;
+  const PairList *pairs_ = nullptr;    // of the step
   WarmStart memory_;
   EnergyLimit energy_limit_;
   SolverOptions options_;
@@ -126,7 +124,6 @@ class Step {
   bool energy_limited_ = false;    // in this step
   bool shared_among_threads_ = false;   // the contacts that are being solved
   double free_norm_ = 0;           // of the step's contacts, m/s
-  double velocity_scale_ = 0;      // what velocities in the scene are worth, m/s
   double listed_ = 0;              // as Reach has it
   bool wants_rebuild_ = false;
   const std::string crowding_;

@@ -29,19 +29,18 @@ NSCD_HOT void Step::tally_contacts()
     work += c.impulse * (info.speed_before + normal_velocity(c, s.bodies.data()));
     const Sphere &a = s.spheres[info.atom_i];
     Vec4 separation = a.centre + s.displacement[c.i];
-    double smaller = a.radius;
     if (info.atom_j >= 0) {
       const Sphere &b = s.spheres[info.atom_j];
       separation -= b.centre + s.displacement[c.j];
       info.gap = std::sqrt(dot(separation, separation)) - a.radius - b.radius;
-      smaller = std::min(smaller, b.radius);
     } else {
       info.gap += dot(c.normal, s.displacement[c.i]);
     }
     overlap = std::max(overlap, -info.gap);
-    ratio = std::max(ratio, -info.gap / smaller);
+    ratio = std::max(ratio, -info.gap / info.radius);
   }
-  double largest[] = {overlap, ratio};
+  const Overlap &watched = s.watched_overlap;
+  double largest[] = {std::max(overlap, watched.length), std::max(ratio, watched.ratio)};
   if (halo_) halo_->max(largest);
   report_.largest_overlap = largest[0];
   report_.largest_overlap_ratio = largest[1];

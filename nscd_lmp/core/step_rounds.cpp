@@ -2,6 +2,7 @@
 #include "step.hpp"
 
 #include "slides.hpp"
+#include "approach_bound.hpp"
 
 #include <algorithm>
 
@@ -77,18 +78,16 @@ void Step::solve()
   judge();
 }
 
-// What a solved step leaves of an overlap, m.
-double Step::left_of_contacts() const
-{
-  return std::min(tolerances * state_.tolerance, options_.approach) * state_.dt;
-}
-
 // Whether watched pairs have become contacts.
 bool Step::promote()
 {
   const std::size_t before = state_.contacts.size();
   std::size_t more = 0;
-  together([&] { more = promote_near(state_, left_of_contacts()); });
+  together([&] {
+    watch_farther(state_, *pairs_);
+    if (law_->looks_ahead()) more = promote_near(state_);
+    else look_at_near(state_);
+  });
   if (sum_everywhere(state_, double(more)) == 0) return false;
   place_slides(state_, before);
   if (halo_) halo_->share_contacts(state_);
@@ -106,7 +105,8 @@ void Step::resolve_impacts_first(bool again)
   }
   for (Contact &c : state_.contacts) c.impulse = 0;
   law_->impacts(state_, [this](std::size_t count) {
-    const double norm = velocity_norm(state_, 0, count);
+    const double norm = keep_free_velocities(state_, 0, count);
+    bound_approach_of_impacts(state_, count);
     solve_within_energy({count, settings_.restitution, settings_.e_t, norm}, EnergyLimit::From::solve);
   });
 }

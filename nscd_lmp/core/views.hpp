@@ -22,6 +22,7 @@ struct Grains {
   const int *home = nullptr;       // (ghosts) rank that owns the grain; null on one rank
   const int *mask = nullptr;       // (owned)
   int group = 1;                   // an atom moves if mask & group; the others are obstacles of infinite mass
+  int later = 0;                   // obstacles of these groups move later in the step, all others have already moved
   double force_to_acceleration = 1;  // LAMMPS' ftm2v
 };
 

@@ -7,8 +7,9 @@
 //   each complementary to p >= 0
 //
 // Spheres and planes are convex, so the linearised gap is a lower bound: the step leaves no overlap but what
-// the solver's tolerance and contacts that were not foreseen leave. The recovery gives that back slowly: `cap`
-// is a tenth of the step's largest smooth velocity change, so that no overlap is ever thrown apart. With friction a bed
+// the solver's tolerance and contacts that were not foreseen leave. The recovery gives that back slowly: `cap` is a
+// tenth of what the smooth forces change of its two grains' velocities, so that no overlap is ever thrown apart, and
+// what pulls at other grains plays no part. With friction a bed
 // between walls can be wedged: it cannot give anything back, and asking for it makes impulses grow without end. So
 // there an overlap of 3e-5 of the smaller radius is left as it is.
 //
@@ -32,7 +33,7 @@ namespace nscd {
 
 namespace {
 
-constexpr double recovery_cap = 0.1;   // of the step's largest smooth velocity change
+constexpr double recovery_cap = 0.1;   // of the grains' smooth velocity change
 constexpr double tolerated_overlap = 3e-5;   // of the smaller radius, with friction
 
 class Gap final : public Law {
@@ -47,37 +48,37 @@ class Gap final : public Law {
   void displace(State &s) override;
 
  private:
-  double gap_to_close(const State &s, const ContactInfo &info) const;
   double rate(const Contact &c) const;
+  bool is_open(const State &s, std::size_t k, double rate) const;
   bool open_contact(const State &s, std::uint32_t k);
   void open_contacts(const State &s);
 
   AlignedVector<Vec4> mean_;      // per body: midpoint velocity, or v_{k+1} where that is needed
   std::vector<char> final_;      // per body: moves with v_{k+1}
   std::vector<std::uint32_t> suspects_;   // contacts that may be driven into overlap
-  double slack_ = 0;             // m, overlap that the solver's tolerance leaves anyway
 };
-
-// With friction: 0 within the tolerated overlap.
-double Gap::gap_to_close(const State &s, const ContactInfo &info) const
-{
-  double smaller = s.spheres[info.atom_i].radius;
-  if (info.atom_j >= 0) smaller = std::min(smaller, s.spheres[info.atom_j].radius);
-  return info.gap < 0 ? std::min(0.0, info.gap + tolerated_overlap * smaller) : info.gap;
-}
 
 void Gap::set_bias(State &s, std::size_t first)
 {
   const double rate = 1 / s.dt, back = s.settings.recovery / s.dt;
-  const double cap = recovery_cap * s.smooth_kick + s.tolerance;
+  const double tolerated = s.friction.model == Model::frictionless ? 0.0 : tolerated_overlap;
   for (std::size_t k = first; k < s.contacts.size(); ++k) {
-    const double gap = s.friction.model == Model::frictionless ? s.infos[k].gap : gap_to_close(s, s.infos[k]);
-    s.contacts[k].bias = std::max(gap * (gap < 0 ? back : rate), -cap);
+    const ContactInfo &info = s.infos[k];
+    const double overlap = std::max(0.0, -info.gap - tolerated * info.radius);
+    const double cap = recovery_cap * info.kick + tolerance(s, worth(info));
+    s.contacts[k].bias = info.gap > 0 ? info.gap * rate : -std::min(overlap * back, cap);
   }
 }
 
 // Rate at which the contact's gap changes as its bodies move now, m/s.
 double Gap::rate(const Contact &c) const { return dot(c.normal, mean_[c.i] - mean_[c.j]); }
+
+// Whether the contact is left with no more overlap than the solver's tolerance leaves anyway.
+bool Gap::is_open(const State &s, std::size_t k, double rate) const
+{
+  const ContactInfo &info = s.infos[k];
+  return !(info.gap + s.dt * (rate + tolerances * tolerance(s, worth(info))) < 0);
+}
 
 // If the contact is driven into overlap, both grains are made to move with v_{k+1}, unless that is worse still.
 // Returns whether that changed a grain.
@@ -86,7 +87,7 @@ bool Gap::open_contact(const State &s, std::uint32_t k)
   const Contact &c = s.contacts[k];
   if (final_[c.i] && final_[c.j]) return false;
   const double now = rate(c);
-  if (s.infos[k].gap + s.dt * now >= -slack_ || now >= normal_velocity(c, s.bodies.data())) return false;
+  if (is_open(s, k, now) || now >= normal_velocity(c, s.bodies.data())) return false;
   for (const int b : {c.i, c.j}) {
     mean_[b] = s.bodies[b];
     final_[b] = 1;
@@ -104,7 +105,7 @@ NSCD_HOT void Gap::open_contacts(const State &s)
   for (std::size_t k = 0; k < n; ++k) {
     fetch_bodies(s.contacts[std::min(k + fetch_ahead, n - 1)], mean_.data());
     suspects_[count] = std::uint32_t(k);
-    count += s.infos[k].gap + s.dt * rate(s.contacts[k]) < -slack_;
+    count += !is_open(s, k, rate(s.contacts[k]));
   }
   for (bool changed = true; changed;) {
     changed = false;
@@ -120,7 +121,6 @@ NSCD_HOT void Gap::open_contacts(const State &s)
 void Gap::displace(State &s)
 {
   const std::size_t bodies = s.bodies.size();
-  slack_ = tolerances * s.tolerance * s.dt;
   mean_.resize(bodies);
   final_.assign(bodies, 0);
   for (std::size_t i = 0; i < bodies; ++i) {
@@ -140,7 +140,7 @@ void Gap::displace(State &s)
   }
   for (int i = 0; i < s.moving(); ++i) {
     const Vec4 &w = mean_[i];
-    s.displacement[i] = Vec4{w[0], w[1], w[2], 0} * (w[3] > 0 ? s.dt : 0.0);
+    s.displacement[i] = Vec4{w[0], w[1], w[2], 0} * s.dt;
   }
 }
 

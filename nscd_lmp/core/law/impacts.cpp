@@ -10,7 +10,7 @@ namespace nscd {
 
 namespace {
 
-constexpr double resting_kicks = 2;    // slower than so many smooth velocity changes of the step: resting
+constexpr double resting_kicks = 2;    // slower than so many smooth velocity changes of its grains: resting
 constexpr int max_rounds = 50;
 
 // Adds sign times half the smooth velocity change of the step.
@@ -34,10 +34,10 @@ void bias_impact(State &s, std::size_t k, double u)
 // double the memory of a contact.
 std::size_t select_closing(State &s)
 {
-  const double slow = resting_kicks * s.smooth_kick + tolerances * s.tolerance;
   std::size_t closing = 0;
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
     const double u = normal_velocity(s.contacts[k], s.bodies.data());
+    const double slow = resting_kicks * s.infos[k].kick + tolerances * tolerance(s, worth(s.infos[k]));
     if (u >= -slow || std::max(s.infos[k].gap, 0.0) + s.dt * u >= 0) continue;
     swap_contacts(s, k, closing);
     bias_impact(s, closing++, u);

@@ -35,7 +35,7 @@ class Moreau final : public Law {
     const double step = s.settings.theta * s.dt;
     for (int i = 0; i < s.moving(); ++i) {
       const Body &b = s.bodies[i];
-      s.displacement[i] = Vec4{b[0], b[1], b[2], 0} * (b[3] > 0 ? step : 0.0);
+      s.displacement[i] = Vec4{b[0], b[1], b[2], 0} * step;
     }
   }
 };

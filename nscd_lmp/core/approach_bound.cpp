@@ -1,0 +1,31 @@
+#include "approach_bound.hpp"
+
+#include "hot.hpp"
+
+#include <algorithm>
+
+namespace nscd {
+
+// Where no deeper overlap is allowed, a step may still add this share of what is: sweeps end, but never quite.
+constexpr double least_share = 0.01;
+
+NSCD_HOT void bound_approach(State &s, std::size_t first)
+{
+  if (!s.settings.overlap) return;
+  resize_closely(s.per_approach, s.contacts.size());
+  for (std::size_t k = first; k < s.contacts.size(); ++k) {
+    const ContactInfo &info = s.infos[k];
+    const double deepest = *s.settings.overlap * info.radius;
+    const double deeper = std::max(deepest + info.gap, least_share * deepest);
+    s.per_approach[k] = 1 / (deeper / s.dt - s.contacts[k].bias);
+  }
+}
+
+void bound_approach_of_impacts(State &s, std::size_t count)
+{
+  if (!s.settings.overlap) return;
+  resize_closely(s.per_approach, s.contacts.size());
+  for (std::size_t k = 0; k < count; ++k) s.per_approach[k] = s.dt / (*s.settings.overlap * s.infos[k].radius);
+}
+
+}    // namespace nscd
