@@ -18,16 +18,15 @@ NSCD_INLINE double speed2(const Body &b) { return b[0] * b[0] + b[1] * b[1] + b[
 
 // Of squares.
 struct Look {
-  double ratios2 = 0, worst2 = 0;
+  double of_kicks2 = 0, worst2 = 0;
 
   // `push` is W_nn p. Returns the square of the residual, less round-off.
   NSCD_INLINE double add(const ContactInfo &info, double residual2, double push, double speed2)
   {
     constexpr double least = 1e-300;
-    const double left2 = std::max(0.0, residual2 - round_off2 * speed2);
-    const double ratio2 = left2 / (info.kick * info.kick + info.free2 + push * push + least);
-    ratios2 += ratio2;
-    worst2 = std::max(worst2, ratio2);
+    const double left2 = std::max(0.0, residual2 - round_off2 * speed2), kick2 = info.kick * info.kick;
+    worst2 = std::max(worst2, left2 / (kick2 + info.free2 + push * push + least));
+    of_kicks2 += kick2 > 0 ? left2 / kick2 : 0.0;
     return left2;
   }
 };
@@ -113,7 +112,7 @@ NSCD_HOT double worst_island(const Problem &problem)
 void look_closer(const Problem &problem, Criterion &seen)
 {
   const Look look = look_at_contacts(problem);
-  double sums[] = {look.ratios2, double(problem.contacts.size())};
+  double sums[] = {look.of_kicks2, double(problem.contacts.size())};
   if (problem.halo) problem.halo->sum(sums);
   seen.worst = std::sqrt(problem.halo ? problem.halo->max(look.worst2) : look.worst2);
   seen.typical = sums[1] > 0 ? std::sqrt(sums[0] / sums[1]) : 0;

@@ -2,9 +2,9 @@
 //
 // A sum over a scene says nothing of a contact in it: where forces of 1 N and of 1e5 N act side by side, the small ones
 // could be left out and hardly change it. So where the sums of the criterion are met, this is looked at too:
-//   island    the natural map over the velocities without impulses, 2-norms, of the island where it is largest
+//   island    the natural map over (|dt f / m|^2 + v_free^2)^1/2, 2-norms, of the island where it is largest
 //   worst     a contact's natural map over (|dt f / m|^2 + v_free^2 + (W_nn p)^2)^1/2, of the contact where it is largest
-//   typical   the root of the mean square of that
+//   typical   the root of the mean square of a contact's natural map over |dt f / m|, 0 where no force acts
 #pragma once
 
 #include "criterion.hpp"

@@ -45,13 +45,13 @@ struct Watched {
 
 // What a contact needs outside the sweep.
 struct ContactInfo {
-  double gap;           // m, negative when overlapping; at detection, then at the end of the step
-  double speed_before;  // n.(v_i - v_j) at the start of the step, m/s
-  std::uint64_t key;    // identifies the contact across steps
-  std::int32_t atom_i, atom_j;  // as in Candidate
-  double radius;        // of the smaller grain, m
-  double kick;          // what the smooth forces change of its grains' velocities, the larger of the two, m/s
-  double free2;         // square of its velocity without impulses, biases and slip included, (m/s)^2
+  double gap = 0;           // m, negative when overlapping; at detection, then at the end of the step
+  double speed_before = 0;  // n.(v_i - v_j) at the start of the step, m/s
+  std::uint64_t key = 0;    // identifies the contact across steps
+  std::int32_t atom_i = 0, atom_j = 0;  // as in Candidate
+  double radius = 0;        // of the smaller grain, m
+  double kick = 0;          // what the smooth forces change of its grains' velocities, the larger of the two, m/s
+  double free2 = 0;         // square of its velocity without impulses, biases and slip included, (m/s)^2
 };
 
 // What the velocities of a contact are worth, m/s: what forces give its grains in a step or, where none act, a small

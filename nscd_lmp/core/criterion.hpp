@@ -33,7 +33,7 @@ struct Criterion {
   double relative = 0;
   double island = 0;    // not below `relative`; with the next two, closer_look.hpp
   double worst = 0;
-  double typical = 0;
+  double typical = 0;   // of what forces do in a step
   double approach = 0;  // a contact's -v_n over what may be left of it, the largest
   double total() const { return motion + bipotential + penetration; }
 };

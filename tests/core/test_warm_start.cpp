@@ -74,7 +74,7 @@ struct RememberedContact {
     state.bodies = {Vec4{0, 0, 0, 0.5}, Vec4{0, 0, 0, 0.25}};
     state.friction.spins.resize(2);
     state.contacts = {{normal, 0, 1 / 0.75, impulse, 0, 1}};
-    state.infos = {{0, 0, 77, 0, 1}};
+    state.infos = {{.key = 77, .atom_i = 0, .atom_j = 1}};
     state.friction.slides<M>().resize(1);
     state.friction.slides<M>()[0].impulse = M::from_space(normal, tangential);
   }
