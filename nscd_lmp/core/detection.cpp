@@ -217,8 +217,7 @@ double left_of_contact(const State &s, const Candidate &c)
 {
   double kick = s.kicks[s.owner[c.atom_i]];
   if (!is_wall(c)) kick = std::max(kick, s.kicks[s.owner[c.atom_j]]);
-  const double left = tolerances * tolerance(s, kick) * s.dt;
-  return s.settings.overlap ? std::min(left, *s.settings.overlap * smaller_radius(s, c)) : left;
+  return left_of_overlap(s, kick, smaller_radius(s, c));
 }
 
 // The gap once grains have moved by s.displacement.

@@ -10,13 +10,8 @@ namespace nscd {
 
 namespace {
 
-// Work that is the solver's own error, J.
-double negligible(const State &s, std::size_t count)
-{
-  double sum = 0;
-  for (std::size_t k = 0; k < count; ++k) sum += tolerance(s, worth(s.infos[k])) * std::abs(s.contacts[k].impulse);
-  return tolerances * sum_everywhere(s, sum);
-}
+// A grain of the contact.
+int grain_of(const State &s, const Contact &c) { return s.bodies[c.i][3] > 0 ? c.i : c.j; }
 
 void clear_biases(State &s, std::size_t count)
 {
@@ -50,24 +45,55 @@ void EnergyLimit::store(const State &s, std::size_t count, Motion &m) const
   }
 }
 
-void EnergyLimit::load(State &s, std::size_t count, const Motion &a, const Motion &b, double share) const
+void EnergyLimit::load(State &s, const Motion &motion) const
 {
-  const auto mix = [share](const auto &x, const auto &y) { return x + (y - x) * share; };
-  for (std::size_t i = 0; i < s.bodies.size(); ++i) {
-    s.bodies[i] = mix(a.bodies[i], b.bodies[i]);
-    s.friction.spins[i] = mix(a.spins[i], b.spins[i]);
-  }
-  for (std::size_t k = 0; k < count; ++k) s.contacts[k].impulse = mix(a.normal[k], b.normal[k]);
+  s.bodies = motion.bodies;
+  s.friction.spins = motion.spins;
+  for (std::size_t k = 0; k < motion.normal.size(); ++k) s.contacts[k].impulse = motion.normal[k];
   with_friction(s.friction.model, [&]<class M>(M) {
-    for (std::size_t k = 0; k < count; ++k)
-      s.friction.slides<M>()[k].impulse = M::from_space(s.contacts[k].normal, mix(a.tangential[k], b.tangential[k]));
+    for (std::size_t k = 0; k < motion.normal.size(); ++k)
+      s.friction.slides<M>()[k].impulse = M::from_space(s.contacts[k].normal, motion.tangential[k]);
   });
 }
 
-// Half the sum of p (u- + u+), J; u- with the velocities of `before`, or with those at the start of the step.
-double EnergyLimit::work(const State &s, std::size_t count, const Motion *before) const
+// first_ and second_, mixed by their islands' shares.
+void EnergyLimit::load_blend(State &s, std::size_t count) const
 {
-  double sum = 0;
+  const auto mix = [](const auto &a, const auto &b, double share) { return share == 0 ? a : a + (b - a) * share; };
+  for (std::size_t i = 0; i < s.bodies.size(); ++i) {
+    const double share = share_[islands_.of(int(i))];
+    s.bodies[i] = mix(first_.bodies[i], second_.bodies[i], share);
+    s.friction.spins[i] = mix(first_.spins[i], second_.spins[i], share);
+  }
+  const auto share_of = [&](std::size_t k) { return share_[islands_.of(grain_of(s, s.contacts[k]))]; };
+  for (std::size_t k = 0; k < count; ++k)
+    s.contacts[k].impulse = mix(first_.normal[k], second_.normal[k], share_of(k));
+  with_friction(s.friction.model, [&]<class M>(M) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const Vec4 tangential = mix(first_.tangential[k], second_.tangential[k], share_of(k));
+      s.friction.slides<M>()[k].impulse = M::from_space(s.contacts[k].normal, tangential);
+    }
+  });
+}
+
+// By the contacts that push in first_ or in second_.
+void EnergyLimit::find_islands(const State &s, std::size_t count)
+{
+  joined_.clear();
+  for (std::size_t k = 0; k < count; ++k) {
+    const Contact &c = s.contacts[k];
+    const bool pushes = first_.normal[k] != 0 || second_.normal[k] != 0;
+    if (pushes && s.bodies[c.i][3] > 0 && s.bodies[c.j][3] > 0) joined_.push_back({c.i, c.j});
+  }
+  islands_.find(s.bodies.size(), joined_, s.halo);
+  share_.assign(islands_.count(), 0);
+}
+
+// Half the sum of p (u- + u+), J, of every island; u- with the velocities of `before`, or with those at the start of the
+// step.
+void EnergyLimit::find_work(const State &s, std::size_t count, const Motion *before, std::vector<double> &work)
+{
+  work.assign(islands_.count(), 0);
   with_friction(s.friction.model, [&]<class M>(M) {
     for (std::size_t k = 0; k < count; ++k) {
       const Contact &c = s.contacts[k];
@@ -75,33 +101,59 @@ double EnergyLimit::work(const State &s, std::size_t count, const Motion *before
       using Velocity = Split<typename M::Tangent>;
       const Velocity first = before ? velocity<M>(c, before->bodies.data(), before->spins.data())
                                     : Velocity{s.infos[k].speed_before, slip_at_start<M>(s, k)};
-      sum += c.impulse * (first.n + after.n) + inner(s.friction.slides<M>()[k].impulse, first.t + after.t);
+      work[islands_.of(grain_of(s, c))] += 0.5 * (c.impulse * (first.n + after.n) +
+                                                  inner(s.friction.slides<M>()[k].impulse, first.t + after.t));
     }
   });
-  return sum_everywhere(s, sum) / 2;
+  if (s.halo) work[0] = s.halo->sum(work[0]);
 }
 
-// Loads the blend of first_ and second_ whose work is down to `limit`.
-void EnergyLimit::blend(State &s, std::size_t count, const Motion *before, double limit)
+// What every island's work is now, in first_, and what of it is the solver's own error. Returns whether any makes more
+// than that, on any rank.
+bool EnergyLimit::find_excess(State &s, std::size_t count, const Motion *before)
 {
-  load(s, count, first_, first_, 0);
-  const double at0 = work(s, count, before);
-  load(s, count, first_, second_, 1);
-  const double at1 = work(s, count, before);
-  load(s, count, first_, second_, 0.5);
-  const double share = share_down_to(std::max(limit, at1), at0, work(s, count, before), at1);
-  load(s, count, first_, second_, share);
+  find_islands(s, count);
+  find_work(s, count, before, at_first_);
+  limit_.assign(islands_.count(), 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Contact &c = s.contacts[k];
+    limit_[islands_.of(grain_of(s, c))] += tolerances * tolerance(s, worth(s.infos[k])) * std::abs(c.impulse);
+  }
+  if (s.halo) limit_[0] = s.halo->sum(limit_[0]);
+  bool any = false;
+  for (int island = 0; island < islands_.count(); ++island) any |= at_first_[island] > limit_[island];
+  return sum_everywhere(s, any) > 0;
+}
+
+// Islands that make too much in first_ take of second_ what brings them down to this share of their limit.
+void EnergyLimit::blend(State &s, std::size_t count, const Motion *before, double of_limit)
+{
+  const auto look_at = [&](double share, std::vector<double> &work) {
+    std::fill(share_.begin(), share_.end(), share);
+    load_blend(s, count);
+    find_work(s, count, before, work);
+  };
+  look_at(1, at_second_);
+  look_at(0.5, half_way_);
+  for (std::size_t island = 0; island < share_.size(); ++island) {
+    const double at0 = at_first_[island], at1 = at_second_[island], limit = std::max(of_limit * limit_[island], at1);
+    share_[island] = at0 > limit_[island] ? share_down_to(limit, at0, half_way_[island], at1) : 0;
+  }
+  load_blend(s, count);
 }
 
 bool EnergyLimit::limit_restitution(State &s, std::size_t count, From from, const std::function<bool()> &solver)
 {
   const Motion *const before = from == From::step ? nullptr : &before_;
-  if (work(s, count, before) <= negligible(s, count)) return false;
   store(s, count, first_);
-  load(s, count, before_, before_, 0);
+  second_.normal.assign(count, 0);   // not known yet
+  if (!find_excess(s, count, before)) return false;
+  load(s, before_);
   clear_biases(s, count);
   solver();
   store(s, count, second_);
+  load(s, first_);
+  find_excess(s, count, before);   // with the islands that second_ joins
   blend(s, count, before, 0);
   return true;
 }
@@ -109,14 +161,13 @@ bool EnergyLimit::limit_restitution(State &s, std::size_t count, From from, cons
 bool EnergyLimit::limit_unsolved(State &s, std::size_t count)
 {
   store(s, count, first_);
-  const double limit = negligible(s, count);
   change_across(s.halo, s.bodies, s.friction.spins.data(), [&] {
     for (std::size_t k = 0; k < count; ++k) remove_impulse(s, k);
   });
   store(s, count, second_);
-  load(s, count, first_, second_, 0);
-  if (work(s, count, &second_) <= limit) return false;
-  blend(s, count, &second_, limit);
+  load(s, first_);
+  if (!find_excess(s, count, &second_)) return false;
+  blend(s, count, &second_, 1);
   return true;
 }
 

@@ -9,8 +9,11 @@
 //
 // An unsolved frictional problem, given up after maxiter, can show any energy. It is blended with no impulses at all
 // until the contacts raise the kinetic energy above that of the free motion no more: they give way, but throw nothing.
+//
+// All of it island by island (islands.hpp): what one makes no other pays for.
 #pragma once
 
+#include "islands.hpp"
 #include "state.hpp"
 
 #include <functional>
@@ -35,13 +38,24 @@ class EnergyLimit {
     AlignedVector<Vec4> tangential;
   };
   void store(const State &state, std::size_t count, Motion &motion) const;
-  void load(State &state, std::size_t count, const Motion &a, const Motion &b, double share_of_b) const;
-  double work(const State &state, std::size_t count, const Motion *before) const;
-  void blend(State &state, std::size_t count, const Motion *before, double limit);
+  void load(State &state, const Motion &motion) const;
+  void load_blend(State &state, std::size_t count) const;
+  void find_islands(const State &state, std::size_t count);
+  void find_work(const State &state, std::size_t count, const Motion *before, std::vector<double> &work);
+  bool find_excess(State &state, std::size_t count, const Motion *before);
+  void blend(State &state, std::size_t count, const Motion *before, double of_limit);
   bool limit_restitution(State &state, std::size_t count, From from, const std::function<bool()> &solver);
   bool limit_unsolved(State &state, std::size_t count);
 
+  struct Joined {
+    std::int32_t i, j;
+  };
   Motion before_, first_, second_;
+  Islands islands_;
+  std::vector<Joined> joined_;
+  // One an island: shares of second_, and work, J: what is the solver's own error, and what first_, second_ and their mean
+  // make.
+  std::vector<double> share_, limit_, at_first_, at_second_, half_way_;
 };
 
 }    // namespace nscd

@@ -78,11 +78,13 @@ class Halo {
   // Local. Tags that this rank owns since the last plan but not before.
   const std::vector<std::int32_t> &arrivals() const { return arrivals_; }
   std::vector<Letter> deliver(const std::vector<Letter> &out);
-  // Local. f(body) for every body here that contacts of several ranks touch.
+  // Local. f(body) for every body here that contacts of another rank than its owner's touch, perhaps more than once.
   template <class F>
   void for_each_shared(F f) const
   {
-    for (const Shared &shared : shared_) f(shared.body);
+    for (const Peer &peer : peers_)
+      for (const Bodies &bodies : {std::cref(peer.shared_copies), std::cref(peer.shared_owned)})
+        for (const std::int32_t body : bodies) f(body);
   }
 
  private:

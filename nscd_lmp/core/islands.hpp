@@ -1,5 +1,6 @@
 // Islands: grains that are connected through contacts that push. What happens in one has nothing to do with another, so
 // whatever is judged or corrected is judged or corrected island by island, never over the whole scene.
+// On several ranks all islands that reach across ranks count as one.
 #pragma once
 
 #include <array>
@@ -17,8 +18,8 @@ class Islands {
   // What is summed up over an island.
   using Sums = std::array<double, 2>;
 
-  // Pairs connect the bodies .i and .j, two grains; obstacles connect nothing and are in no pair. On several ranks all
-  // islands that reach across ranks count as one, number 0.
+  // Pairs connect the bodies .i and .j, two grains; obstacles connect nothing and are in no pair. On several ranks number
+  // 0 is what reaches across ranks.
   template <class Pairs>
   void find(std::size_t bodies, const Pairs &pairs, const Halo *halo)
   {

@@ -109,6 +109,13 @@ struct State {
 // What a solved step leaves of a contact's velocity in error, m/s.
 inline double tolerance(const State &s, double worth) { return s.tol_of_worth * worth + s.tol_absolute; }
 
+// What a solved step leaves of an overlap, m; `radius` of the smaller grain.
+inline double left_of_overlap(const State &s, double worth, double radius)
+{
+  const double left = tolerances * tolerance(s, worth) * s.dt;
+  return s.settings.overlap ? std::min(left, *s.settings.overlap * radius) : left;
+}
+
 // Over all ranks.
 inline double sum_everywhere(const State &s, double value) { return s.halo ? s.halo->sum(value) : value; }
 

@@ -77,7 +77,7 @@ double Gap::rate(const Contact &c) const { return dot(c.normal, mean_[c.i] - mea
 bool Gap::is_open(const State &s, std::size_t k, double rate) const
 {
   const ContactInfo &info = s.infos[k];
-  return !(info.gap + s.dt * (rate + tolerances * tolerance(s, worth(info))) < 0);
+  return !(info.gap + s.dt * rate < -left_of_overlap(s, worth(info), info.radius));
 }
 
 // If the contact is driven into overlap, both grains are made to move with v_{k+1}, unless that is worse still.
