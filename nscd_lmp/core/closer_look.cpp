@@ -119,4 +119,20 @@ void look_closer(const Problem &problem, Criterion &seen)
   if (seen.worst <= off_of_solved && problem.judges_islands) seen.island = std::max(seen.relative, worst_island(problem));
 }
 
+bool is_jammed(const Problem &problem)
+{
+  constexpr double part = 0.1, far_harder2 = 1e4;
+  bool jammed = false;
+  for (std::size_t k = 0; k < problem.contacts.size() && !jammed; ++k) {
+    const Contact &c = problem.contacts[k];
+    const ContactInfo &info = problem.infos[k];
+    const Body &bi = problem.bodies[c.i], &bj = problem.bodies[c.j];
+    const double obstacle2 = bi[3] == 0 ? speed2(bi) : bj[3] == 0 ? speed2(bj) : 0;
+    const double v = normal_velocity(c, problem.bodies.data()), push = c.impulse / c.w_inverse;
+    const double worth2 = info.kick * info.kick + obstacle2;
+    jammed = v < 0 && v * v > part * part * obstacle2 && obstacle2 > 0 && push * push > far_harder2 * worth2;
+  }
+  return (problem.halo ? problem.halo->max(double(jammed)) : jammed) > 0;
+}
+
 }    // namespace nscd

@@ -42,7 +42,8 @@ std::string told_unconverged(const Settings &s, long unconverged, long steps)
 void Remarks::add(const StepReport &r)
 {
   ++steps_;
-  unconverged_ += !r.converged;
+  unconverged_ += !r.converged && !r.jammed;
+  jammed_ += r.jammed;
   if (r.converged && r.criterion.typical > residual_worth_saying) {
     ++misjudged_;
     worst_residual_ = std::max(worst_residual_, r.criterion.typical);
@@ -56,6 +57,7 @@ std::vector<std::string> Remarks::take(const Settings &s, bool looks_ahead)
   std::vector<std::string> said;
   const bool of_solver = s.unconverged != Unconverged::ignore;
   if (of_solver && unconverged_ > 0) said.push_back(told_unconverged(s, unconverged_, steps_));
+  if (of_solver && jammed_ > 0) said.push_back(sentence("in ", jammed_, " of ", steps_, " steps ", nothing_gives_way));
   if (of_solver && misjudged_ > 0 && s.criterion == Stop::paper)
     said.push_back(sentence(misjudged_, " of ", steps_, " steps met tol ", *s.tol, " of criterion (42) with ",
                             "velocities that are off by up to ", rounded(worst_residual_), " of what a step changes: ",

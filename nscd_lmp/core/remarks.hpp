@@ -4,11 +4,17 @@
 #include "settings.hpp"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace nscd {
 
 struct StepReport;
+
+// What a step is told of whose obstacles leave no way out, and what to do.
+constexpr std::string_view nothing_gives_way =
+    "contacts with obstacles or walls approach and nothing can give way, so no impulses stop them: leave the grains "
+    "room, or stop the obstacle (a load instead of a motion: give it to fix nscd's group, and a force)";
 
 class Remarks {
  public:
@@ -20,6 +26,7 @@ class Remarks {
  private:
   long steps_ = 0;
   long unconverged_ = 0;
+  long jammed_ = 0;             // not counted above
   long misjudged_ = 0;          // called solved, and off by more than residual_worth_saying
   double worst_residual_ = 0;   // of those
   double overlap_ratio_ = 0;    // the largest

@@ -32,6 +32,7 @@ struct StepReport {
   long unconverged = 0;              // steps since begin_run
   long energy_limited = 0;           // steps since begin_run in which impulses were scaled back, since they made energy
   bool converged = true;
+  bool jammed = false;               // unconverged, since obstacles approach and nothing can give way
   double seconds_contacts = 0;       // detection, biases, update
   double seconds_solver = 0;
 };
@@ -122,6 +123,7 @@ class Step {
   AlignedVector<Body> free_bodies_;  // as gathered, where impacts may have to be resolved again
   AlignedVector<Vec4> free_spins_;
   bool energy_limited_ = false;    // in this step
+  bool jammed_ = false;            // the last solve that was given up
   bool shared_among_threads_ = false;   // the contacts that are being solved
   double free_norm_ = 0;           // of the step's contacts, m/s
   double listed_ = 0;              // as Reach has it

@@ -35,6 +35,7 @@ void Step::begin_rounds()
   report_.iterations = 0;
   report_.seconds_solver = 0;
   report_.converged = true;
+  report_.jammed = jammed_ = false;
   energy_limited_ = false;
   state_.impact_impulse.clear();
   state_.per_approach.clear();

@@ -67,6 +67,41 @@ SolverReport run(std::string_view solver, GlobalProblem &problem, const SolverOp
   return find_solver(solver).solve_global(problem, options);
 }
 
+// Impulses and what they do, to come back to.
+class Iterate {
+ public:
+  void keep(const Problem &problem)
+  {
+    bodies_.assign(problem.bodies.begin(), problem.bodies.end());
+    contacts_.assign(problem.contacts.begin(), problem.contacts.end());
+    with_friction(problem.sliding.model, [&]<class M>(M) {
+      const auto *const slides = problem.sliding.slides<M>();
+      spins_.assign(problem.sliding.spins, problem.sliding.spins + problem.bodies.size());
+      for (std::size_t k = 0; k < problem.contacts.size(); ++k)
+        tangential_.push_back(M::in_space(problem.contacts[k].normal, slides[k].impulse));
+    });
+  }
+  void restore(Problem &problem) const
+  {
+    std::copy(bodies_.begin(), bodies_.end(), problem.bodies.begin());
+    std::copy(contacts_.begin(), contacts_.end(), problem.contacts.begin());
+    std::copy(spins_.begin(), spins_.end(), problem.sliding.spins);
+    with_friction(problem.sliding.model, [&]<class M>(M) {
+      for (std::size_t k = 0; k < tangential_.size(); ++k)
+        problem.sliding.slides<M>()[k].impulse = M::from_space(problem.contacts[k].normal, tangential_[k]);
+    });
+  }
+
+  void keep(const GlobalProblem &problem) { impulses_.assign(problem.p.begin(), problem.p.end()); }
+  void restore(GlobalProblem &problem) const { std::copy(impulses_.begin(), impulses_.end(), problem.p.begin()); }
+
+ private:
+  AlignedVector<Body> bodies_;
+  AlignedVector<Vec4> spins_, tangential_;
+  std::vector<Contact> contacts_;
+  std::vector<double> impulses_;
+};
+
 // One solver after another on the same iterate; iterations add up.
 template <class AnyProblem>
 class Relay {
@@ -78,7 +113,7 @@ class Relay {
 
   void hand_to(std::string_view solver, double alternative = 0)
   {
-    if (report_.converged || report_.at_round_off || left_.maxiter < 1) return;
+    if (is_over()) return;
     left_.alternative = alternative;
     left_.parameter = find_solver(solver).default_parameter;
     const std::size_t first = left_.history ? left_.history->size() : 0;
@@ -93,10 +128,28 @@ class Relay {
     left_.maxiter -= done.iterations;
   }
 
+  // A factorisation that does not end is of no use to those that go on: where nothing can give way its impulses are as
+  // large as round-off lets them be.
+  void try_factorising(std::string_view solver)
+  {
+    if (is_over()) return;
+    Iterate before;
+    before.keep(problem_);
+    const Criterion seen = report_.criterion;
+    hand_to(solver);
+    const bool better = judged(report_.criterion, left_) < judged(seen, left_);
+    if (report_.converged || (report_.at_round_off && better)) return;
+    before.restore(problem_);
+    report_.criterion = seen;
+    report_.at_round_off = false;
+  }
+
   double sweeps_left() const { return left_.maxiter; }
   const SolverReport &report() const { return report_; }
 
  private:
+  bool is_over() const { return report_.converged || report_.at_round_off || left_.maxiter < 1; }
+
   AnyProblem &problem_;
   SolverOptions left_;
   SolverReport report_;
@@ -109,7 +162,7 @@ SolverReport choose(AnyProblem &problem, const SolverOptions &options)
   const bool friction = has_friction(problem);
   if (!on_several_ranks(problem)) {
     relay.hand_to("apgs", friction ? interior_point_in_sweeps(problem) : active_set_in_sweeps(problem));
-    relay.hand_to(friction ? "interior_point" : "active_set");
+    relay.try_factorising(friction ? "interior_point" : "active_set");
   }
   relay.hand_to("apgs", relay.sweeps_left() / 2);
   relay.hand_to("pdas");
