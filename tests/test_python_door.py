@@ -35,6 +35,24 @@ def test_contacts_tell_point_normal_gap_and_impulse(start):
     np.testing.assert_allclose(contacts["impulse"][order], balance, rtol=0, atol=mass * 1e-12)
 
 
+def test_stats_are_read_without_copying_what_was_read_and_keep_their_rows(start):
+    lmp = start(grains((0, 0, 0.5), 0.5, v=(0.1, 0, 0)), 1e-3, gravity=GRAVITY, vmax=4.0)
+    attached = nscd_lmp.attach(lmp, walls=[FLOOR])
+    assert len(attached.stats) == 0
+    seen = []
+    for steps in (3, 1, 40, 0, 2):
+        lmp.command(f"run {steps} post no")
+        seen.append((attached.stats, attached.stats.copy()))
+    for view, copy in seen:
+        np.testing.assert_array_equal(view, copy)
+        assert not view.flags.writeable
+    last = attached.stats
+    assert last["step"].tolist() == list(range(1, 47))
+    assert np.shares_memory(last, attached.stats)  # nothing is copied where no step was taken
+    attached.detach()
+    np.testing.assert_array_equal(attached.stats, last)
+
+
 def test_contact_between_grains_lies_between_them(start):
     normal = np.array([2.0, -1.0, 2.0]) / 3
     lmp = start(grains([0.7 * normal, (0, 0, 0)], [0.2, 0.5], v=[-normal, (0, 0, 0)]), 1e-4)

@@ -46,8 +46,9 @@ def refuse(folder: Path, cases: int, changed: list[str]) -> None:
     """
     names = ", ".join(dict.fromkeys(changed))
     raise NscdError(
-        f"{cases} finished cases in '{folder}' were run before a change of {names}: stale=\"keep\" takes their results as"
-        f' they are, stale="rerun" runs them again and keeps the old ones in {folder / SUPERSEDED}, another folder'
+        f"{cases} finished cases in '{folder}' were run before a change of {names}:"
+        ' stale="keep" takes their results as they are, stale="rerun" runs them again and keeps the old ones in'
+        f" {folder / SUPERSEDED}, another folder"
         " leaves all there is alone (on the command line --stale keep, --stale rerun)"
     )
 

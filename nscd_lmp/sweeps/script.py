@@ -41,7 +41,10 @@ class ScriptTask:
         return {"code": ScriptText(self.script, _words(case, folder)).code(), "results": self.results}
 
     def spec(self, case: Case, folder: Path) -> dict[str, Any]:
-        """Return what the worker has to know; a script that includes files from elsewhere gets a copy that finds them."""
+        """Return what the worker has to know; a script that includes files from elsewhere gets a copy that finds them.
+
+        The copy is in the case's folder.
+        """
         words = _words(case, folder / case.name)
         script = ScriptText(self.script, words).placed(folder / case.name)
         return {"script": str(script), "words": words, "results": self.results}
