@@ -210,8 +210,8 @@ class _Door:
         self.fix = _core.ExternalFix(
             addresses, FIX_ID, pair_style, cutoff, group_bit, keywords, solver, ranks, find_homes
         )
-        if self.fix.crowding:
-            warnings.warn(self.fix.crowding, stacklevel=3)
+        for doubt in [*filter(None, [self.fix.crowding]), *self.fix.doubts()]:
+            warnings.warn(doubt, stacklevel=3)
         self.methods = {name: getattr(lmp, name) for name in COMMAND_METHODS}
         self.add_fix()
         for name in COMMAND_METHODS:

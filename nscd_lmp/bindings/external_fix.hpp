@@ -40,6 +40,7 @@ class ExternalFix {
   // Hands over the rows since the last call.
   std::vector<StatsRow> take_stats() { return std::exchange(stats_, {}); }
   std::vector<std::string> take_remarks() { return step_.take_remarks(); }
+  std::vector<std::string> doubts() const;  // about a scene before its first step
   void set_cutoff(double cutoff) { cutoff_ = cutoff; }
 
   // What stopped the run; empty if nothing did. Reading it forgets it.
