@@ -44,9 +44,9 @@ std::vector<std::string> doubts(const Grains &g, double atoms, Ranks *ranks)
   std::vector<std::string> told;
   const std::int64_t weightless = grains[1], all = grains[0], last = last_tag, there = atoms;
   if (weightless > 0)
-    told.push_back(sentence(weightless, " of ", all, " grains have the mass ", default_mass, " of a sphere of diameter 1 "
-                            "and density 1, which create_atoms gives, but another radius: their masses were never set, "
-                            "and `set ... diameter` does not change them. Use `set group all density` or `mass`"));
+    told.push_back(sentence(weightless, " of ", all, " grains have the mass ", default_mass, " of a sphere of diameter "
+                            "1 and density 1, which create_atoms gives, but another radius: their masses were never "
+                            "set, and `set ... diameter` does not change them. Use `set group all density` or `mass`"));
   if (last > there)
     told.push_back(sentence("atom IDs reach ", last, ", but there are ", there, " atoms: create_atoms leaves out those "
                             "outside the box. If that is meant, `reset_atoms id` numbers them anew"));
