@@ -71,6 +71,16 @@ def unit_planes(planes: ArrayLike | None) -> tuple[Array, Array]:
     return rows[:, :3], rows[:, 3:] / length
 
 
+def require_finite(x: Array, radius: Array) -> None:
+    """Raise ValueError for grains that are nowhere: they would touch nothing, and the others as ever."""
+    wrong = np.flatnonzero(~(np.isfinite(x).all(axis=1) & np.isfinite(radius)))
+    if len(wrong):
+        raise ValueError(
+            f"{len(wrong)} of {len(x)} grains, the first of index {wrong[0]}, have a position or radius that is not a"
+            " finite number: the run exploded before; look at an earlier frame"
+        )
+
+
 def find_wall_contacts(x: Array, radius: Array, planes: ArrayLike | None, reach: float = 0.0) -> Contacts:
     """Contacts with planes whose normals point to the grains.
 
@@ -85,6 +95,7 @@ def find_wall_contacts(x: Array, radius: Array, planes: ArrayLike | None, reach:
     reach : float
         Largest gap that counts, as a fraction of the grain's radius.
     """
+    require_finite(x, radius)
     points, normals = unit_planes(planes)
     gap = np.einsum("kc,nkc->nk", normals, x[:, None, :] - points) - radius[:, None]
     i, k = np.nonzero(gap <= reach * radius[:, None])
@@ -117,13 +128,14 @@ def find_grain_contacts(
     Raises
     ------
     ValueError
-        Arrays of different length, or a radius that is not positive.
+        Arrays of different length, a radius that is not positive, or numbers that are not finite.
     """
     if x.shape != (len(radius), 3) or np.any(radius <= 0.0):
         raise ValueError(
             f"positions have shape {x.shape}, radii {radius.shape} with smallest"
             f" {radius.min(initial=np.inf):g}; (n, 3), (n,) and radii > 0 are needed"
         )
+    require_finite(x, radius)
     cyclic = periodic & np.array([True, True, not is_planar(x)])
     cutoff = radius.max() * (2.0 + max(reach, 0.0))
     images, parent, shift = _with_images(x, bounds, cyclic, cutoff)

@@ -7,6 +7,7 @@ dropped in float64, and turns each broken promise into an error that names the r
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -58,12 +59,16 @@ def read_headers(path: str | Path) -> list[FrameHeader]:
         There is no such file.
     ValueError
         No complete frame; a header that MDAnalysis cannot read (``ITEM: UNITS``, ``ITEM: TIME``);
-        a tilted box; an atom count that changes from frame to frame.
+        a tilted box; an atom count that changes from frame to frame; a file that is damaged, such as
+        one that a killed run left and another went on with.
     """
     if not Path(path).is_file():
         raise FileNotFoundError(f"no dump file at '{path}'; write one with:\n{DUMP_COMMAND}")
-    with anyopen(str(path), "rt") as stream:
-        headers = list(_complete_frames(stream, path))
+    try:
+        with anyopen(str(path), "rt") as stream:
+            headers = list(_complete_frames(stream, path))
+    except (UnicodeDecodeError, EOFError, zlib.error) as error:
+        raise ValueError(f"'{path}' is damaged, or no text dump ({error}); write it or get it again") from error
     if not headers:
         raise ValueError(f"'{path}' holds 0 complete frames, at least 1 is needed; let the run end")
     first = headers[0]
@@ -84,6 +89,8 @@ def read_headers(path: str | Path) -> list[FrameHeader]:
 
 def _complete_frames(stream: TextIO, path: str | Path) -> Iterator[FrameHeader]:
     while line := stream.readline():
+        if not line.startswith("ITEM:"):
+            raise _damaged(path, f"'{line.strip()[:40]}' stands where a frame should start")
         if not line.startswith("ITEM: TIMESTEP"):
             raise ValueError(
                 f"'{path}': a frame starts with '{line.strip()[:40]}' instead of 'ITEM: TIMESTEP'."
@@ -95,8 +102,14 @@ def _complete_frames(stream: TextIO, path: str | Path) -> Iterator[FrameHeader]:
             return
         header = _parse_header(head, path)
         last = head[-1]
-        for _ in range(header.n_grains):
+        for number in range(header.n_grains):
             last = stream.readline()
+            if last.endswith("\n") and len(last.split()) != len(header.columns):
+                raise _damaged(
+                    path,
+                    f"line {number + 1} of the {header.n_grains} grains of step {header.step} is"
+                    f" '{last.strip()[:40]}', not {len(header.columns)} numbers",
+                )
         if not last.endswith("\n"):
             return
         yield header
@@ -115,10 +128,29 @@ def _parse_header(head: list[str], path: str | Path) -> FrameHeader:
             f"'{path}': the header of step {head[0].strip()} has unknown lines"
             f" ('{head[1].strip()}'); write it with dump custom and dump_modify units no time no"
         )
+    try:
+        step, n_grains = int(head[0]), int(head[2])
+        bounds = np.array([[float(word) for word in line.split()] for line in head[4:7]])
+    except ValueError as error:
+        raise _damaged(path, f"in the header of step {head[0].strip()[:40]}: {error}") from error
+    if bounds.shape != (3, 2) or n_grains < 0:
+        raise _damaged(path, f"the header of step {step} has no box of 3 x 2 numbers, or {n_grains} grains")
+    if not np.isfinite(bounds).all():
+        raise ValueError(
+            f"'{path}': the box of step {step} is not of finite numbers: the run exploded before; take the dump up to"
+            " there"
+        )
     return FrameHeader(
-        step=int(head[0]),
-        n_grains=int(head[2]),
-        bounds=np.array([[float(word) for word in line.split()] for line in head[4:7]]),
+        step=step,
+        n_grains=n_grains,
+        bounds=bounds,
         boundary=(boundary[0], boundary[1], boundary[2]),
         columns=tuple(head[7].split()[2:]),
+    )
+
+
+def _damaged(path: str | Path, what: str) -> ValueError:
+    return ValueError(
+        f"'{path}' is damaged: {what}. Two runs may have written it, one after the other was killed: cut it there, and"
+        " write each dump to a file of its own"
     )

@@ -1,8 +1,10 @@
 """Kinetic energy of the grains against time, on a logarithmic axis.
 
-Masses come from the column ``mass``, or from --density and the radii. The energy of rotation is
-added where the dump has ``omegax omegay omegaz``: 1/2 I omega^2 with I = 2/5 m r^2, as LAMMPS has
-it for spheres.
+Masses come from the column ``mass``, or from --density and the radii of spheres. The energy of
+rotation is added where the dump has ``omegax omegay omegaz``: 1/2 I omega^2 with I = 2/5 m r^2 of
+spheres, or 1/2 m r^2 of discs. Discs are what fix nscd makes of grains with friction in `dimension
+2`: by default they are taken for discs where all are at one z, and the table says so; --inertia
+chooses.
 
     python kinetic_energy.py bed.dump --dt 1e-4 --output kinetic_energy.png
 """
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+INERTIA = {"sphere": 2 / 5, "disc": 1 / 2}  # over m r^2
+
 
 @dataclass(frozen=True)
 class EnergyHistory:
@@ -35,11 +39,14 @@ class EnergyHistory:
         Sum of 1/2 m v^2.
     rotational : ndarray, (f,), float64, or None
         Sum of 1/2 I omega^2; None if the dump has no omega.
+    inertia : str
+        A name of `INERTIA`: what the grains were taken for.
     """
 
     time: Array
     translational: Array
     rotational: Array | None
+    inertia: str = "sphere"
 
 
 def compute_translational_energy(v: Array, mass: Array) -> float:
@@ -47,9 +54,9 @@ def compute_translational_energy(v: Array, mass: Array) -> float:
     return float(0.5 * np.sum(mass * np.einsum("nc,nc->n", v, v)))
 
 
-def compute_rotational_energy(omega: Array, mass: Array, radius: Array) -> float:
-    """Sum of 1/2 (2/5 m r^2) omega^2 over the grains; omega (n, 3), mass and radius (n,)."""
-    return float(0.2 * np.sum(mass * radius**2 * np.einsum("nc,nc->n", omega, omega)))
+def compute_rotational_energy(omega: Array, mass: Array, radius: Array, inertia: str = "sphere") -> float:
+    """Sum of 1/2 I omega^2 over the grains, I by a name of `INERTIA`; omega (n, 3), mass and radius (n,)."""
+    return float(0.5 * INERTIA[inertia] * np.sum(mass * radius**2 * np.einsum("nc,nc->n", omega, omega)))
 
 
 def compute_mass(radius: Array, density: float) -> Array:
@@ -57,7 +64,9 @@ def compute_mass(radius: Array, density: float) -> Array:
     return np.asarray(density * 4.0 / 3.0 * np.pi * radius**3, dtype=np.float64)
 
 
-def compute_energy_history(packing: Packing, density: float | None = None, every: int = 1) -> EnergyHistory:
+def compute_energy_history(
+    packing: Packing, density: float | None = None, every: int = 1, inertia: str = "auto"
+) -> EnergyHistory:
     """Kinetic energy of each `every`-th frame of a dump.
 
     Parameters
@@ -68,6 +77,8 @@ def compute_energy_history(packing: Packing, density: float | None = None, every
         For dumps without a mass column; it takes precedence over the column.
     every : int
         Stride over frames.
+    inertia : str
+        A name of `INERTIA`, or ``"auto"``: discs where all grains of the first frame are at one z.
 
     Raises
     ------
@@ -77,6 +88,9 @@ def compute_energy_history(packing: Packing, density: float | None = None, every
     packing.require("vx", "vy", "vz")
     if density is None and not packing.has("mass"):
         raise ValueError(f"'{packing.path}' has no column mass: add it to the dump command, or give --density")
+    if inertia == "auto":
+        z = packing.frame(0).x[:, 2]
+        inertia = "disc" if len(z) > 1 and np.ptp(z) == 0.0 else "sphere"
     time, translational, rotational = [], [], []
     for number in range(0, len(packing), every):
         frame = packing.frame(number)
@@ -85,8 +99,9 @@ def compute_energy_history(packing: Packing, density: float | None = None, every
         time.append(frame.time)
         translational.append(compute_translational_energy(frame.v, mass))
         if frame.omega is not None:
-            rotational.append(compute_rotational_energy(frame.omega, mass, frame.radius))
-    return EnergyHistory(np.array(time), np.array(translational), np.array(rotational) if rotational else None)
+            rotational.append(compute_rotational_energy(frame.omega, mass, frame.radius, inertia))
+    turning = np.array(rotational) if rotational else None
+    return EnergyHistory(np.array(time), np.array(translational), turning, inertia)
 
 
 def plot_kinetic_energy(
@@ -121,11 +136,14 @@ def main(words: Sequence[str]) -> None:
     parser = new_parser(__doc__, "kinetic_energy.png", "frame shown in the table")
     add_time_options(parser)
     parser.add_argument("--density", type=float, help="density of the grains in kg/m^3")
+    parser.add_argument(
+        "--inertia", choices=["auto", *INERTIA], default="auto", help="2/5 m r^2, or 1/2 m r^2; see above [auto]"
+    )
     parser.add_argument("--energy-unit", default="J", help="unit of m v^2 in the dump [J]")
     arguments = parser.parse_args(words)
     packing = Packing(arguments.dump, dt=arguments.dt)
     frame = packing.frame(arguments.frame)
-    history = compute_energy_history(packing, arguments.density, arguments.every)
+    history = compute_energy_history(packing, arguments.density, arguments.every, arguments.inertia)
     shown = int(np.argmin(np.abs(history.time - frame.time)))
     peak = int(np.argmax(history.translational))
     unit = "step" if packing.dt is None else "time (s)"
@@ -136,6 +154,7 @@ def main(words: Sequence[str]) -> None:
     ]
     if history.rotational is not None:
         rows.append((f"rotational ({arguments.energy_unit})", f"{history.rotational[shown]:.6e}"))
+        rows.append(("  of", f"{history.inertia}s"))
     rows += [
         (f"largest translational ({arguments.energy_unit})", f"{history.translational[peak]:.6e}"),
         (f"  at {unit}", f"{history.time[peak]:g}"),

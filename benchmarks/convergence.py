@@ -61,6 +61,7 @@ def _solve_once(lmp: Any, solver: str, iterations: int, width: float) -> Point:
         lmp,
         solver=solver,
         law="moreau",
+        criterion="paper",
         tol=BELOW / 100,
         maxiter=iterations,
         warmstart=False,

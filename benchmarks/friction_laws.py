@@ -97,6 +97,7 @@ def _run(bed: Bed, case: Case, maxiter: int) -> tuple[NDArray[Any], float]:
         solver=case.solver,
         law="gap",
         friction=case.friction,
+        criterion="paper",
         tol=case.tol,
         maxiter=maxiter,
         warmstart=case.start == "warm",

@@ -78,6 +78,7 @@ def microseconds(bed: Bed, settings: dict[str, Any], more_walls: Sequence[nscd_l
         "solver": "apgs",
         "law": "gap",
         "warmstart": False,
+        "criterion": "paper",
         "tol": 1e-14,
         "maxiter": ITERATIONS,
     } | settings

@@ -181,6 +181,7 @@ def _solve_with_rho(scene: Scene, rho: float) -> dict[str, Any]:
         solver="sbp",
         rho=rho,
         law="moreau",
+        criterion="paper",
         tol=1e-7,
         maxiter=10000,
         warmstart=False,

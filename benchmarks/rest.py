@@ -76,7 +76,14 @@ def main(words: Sequence[str] | None = None) -> None:
     record.print_origin()
     lmp, walls = open_balls(grains, DT)
     attached = nscd_lmp.attach(
-        lmp, law="gap", solver="apgs", tol=1e-6, walls=walls, friction=given.friction, unconverged="ignore"
+        lmp,
+        law="gap",
+        solver="apgs",
+        criterion="paper",
+        tol=1e-6,
+        walls=walls,
+        friction=given.friction,
+        unconverged="ignore",
     )
     table = []
     for row in range(rows):

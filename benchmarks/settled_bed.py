@@ -57,7 +57,7 @@ def open_bed(
 def settle(lmp: Any, walls: list[nscd_lmp.Plane], friction: float) -> SavedState:
     """Let the grains fall and come to rest, and close LAMMPS; returns the state."""
     attached = nscd_lmp.attach(
-        lmp, law="gap", tol=1e-6, maxiter=3000, walls=walls, friction=friction, unconverged="ignore"
+        lmp, law="gap", criterion="paper", tol=1e-6, maxiter=3000, walls=walls, friction=friction, unconverged="ignore"
     )
     speed = math.inf
     while speed > AT_REST and len(attached.stats) < MOST_STEPS:

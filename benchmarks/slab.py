@@ -70,7 +70,14 @@ def settled_cell(folder: Path, wide: tuple[int, int], layers: int, friction: flo
     loose = loose_cell(wide, layers)
     lmp = open_slab(loose, dt=SETTLE_DT, cutoff=2e-3)
     attached = nscd_lmp.attach(
-        lmp, solver="apgs", tol=1e-6, maxiter=3000, walls=[FLOOR], friction=friction, unconverged="ignore"
+        lmp,
+        solver="apgs",
+        criterion="paper",
+        tol=1e-6,
+        maxiter=3000,
+        walls=[FLOOR],
+        friction=friction,
+        unconverged="ignore",
     )
     speed = math.inf
     while speed > AT_REST and len(attached.stats) < MOST_STEPS:

@@ -53,7 +53,7 @@ def _attach(lmp: Any, way: Job) -> Any:
 
     import nscd_lmp
 
-    fixed: Job = {"law": "gap", "walls": [FLOOR], "unconverged": "ignore"}
+    fixed: Job = {"law": "gap", "walls": [FLOOR], "unconverged": "ignore", "criterion": "paper"}
     return nscd_lmp.attach(lmp, **(fixed | way))
 
 

@@ -134,7 +134,14 @@ def run_rows(grains: int, steps: int, record: Record) -> list[list[Any]]:
     for solver in (BASE, "apgs", "auto"):
         lmp, walls = open_balls(grains, DT)
         attached = nscd_lmp.attach(
-            lmp, law="gap", solver=solver, tol=1e-6, maxiter=20000, walls=walls, unconverged="ignore"
+            lmp,
+            law="gap",
+            solver=solver,
+            criterion="paper",
+            tol=1e-6,
+            maxiter=20000,
+            walls=walls,
+            unconverged="ignore",
         )
         wall, cpu = time.perf_counter(), time.thread_time()
         lmp.command(f"run {steps} post no")

@@ -125,6 +125,7 @@ def run_steps(bed: Bed, **options: Any) -> tuple[NDArray[Any], float]:
     bed.state.put_back(bed.lmp)
     attached = nscd_lmp.attach(
         bed.lmp,
+        criterion="paper",
         tol=TOL,
         maxiter=bed.model.maxiter,
         walls=bed.walls,
@@ -196,7 +197,7 @@ def memory_row(bed: Bed, record: Record) -> list[Any]:
     """Measure the memory of the fix with law gap and warm start."""
     bed.state.put_back(bed.lmp)
     walls = " ".join(word for wall in bed.walls for word in wall.keywords())
-    options = f"law gap friction {bed.model.friction} tol {TOL} maxiter 20 unconverged ignore"
+    options = f"law gap friction {bed.model.friction} criterion paper tol {TOL} maxiter 20 unconverged ignore"
     bed.lmp.command(f"fix nscd all nscd {options} {walls}")
     bed.lmp.command("run 5 post no")
     contacts = int(bed.lmp.extract_fix("nscd", LMP_STYLE_GLOBAL, LMP_TYPE_VECTOR, 0))

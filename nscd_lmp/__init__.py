@@ -12,6 +12,7 @@ from nscd_lmp.attached import Attached
 from nscd_lmp.choices import FRICTIONAL_SOLVERS, LAWS, LOCAL_LAWS, SOLVERS
 from nscd_lmp.contact_problem import ContactProblem
 from nscd_lmp.contact_system import ContactSystem
+from nscd_lmp.create import create_grains
 from nscd_lmp.door import attach
 from nscd_lmp.fclib import read_fclib, read_fclib_solution, write_fclib
 from nscd_lmp.solve import Solution, solve
@@ -33,6 +34,7 @@ __all__ = [
     "Solution",
     "SweepTable",
     "attach",
+    "create_grains",
     "read_fclib",
     "read_fclib_solution",
     "solve",

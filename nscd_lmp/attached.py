@@ -23,6 +23,8 @@ class Attached:
     def __init__(self, fix: _core.ExternalFix, detach: Any) -> None:
         self._fix = fix
         self._detach = detach
+        self._rows = np.empty(0, STATS_DTYPE)  # with room for more behind the rows so far
+        self._count = 0
 
     @property
     def stats(self) -> NDArray[Any]:
@@ -33,8 +35,21 @@ class Attached:
         ``dissipated_energy`` in J since the run began, ``largest_overlap_ratio`` over the smaller radius,
         ``unconverged_steps`` and ``energy_limited_steps`` since the run began), ``seconds_contacts`` and
         ``seconds_solver``.
+
+        It is read-only, and keeps its rows when more steps are taken. Reading it costs what the steps since the last
+        reading cost, not all of them.
         """
-        return np.frombuffer(self._fix.stats_bytes(), dtype=STATS_DTYPE)
+        new = np.frombuffer(self._fix.take_stats(), dtype=STATS_DTYPE)
+        count = self._count + len(new)
+        if count > len(self._rows):
+            rows = np.empty(2 * count, STATS_DTYPE)
+            rows[: self._count] = self._rows[: self._count]
+            self._rows = rows
+        self._rows[self._count : count] = new
+        self._count = count
+        stats = self._rows[:count]
+        stats.flags.writeable = False
+        return stats
 
     @property
     def contacts(self) -> dict[str, NDArray[np.float64]]:

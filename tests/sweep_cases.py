@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -111,6 +112,13 @@ def ranks(folder: Path, x: int) -> dict[str, Any]:
     return {"ranks": MPI.COMM_WORLD.size if MPI.COMM_WORLD.rank == 0 else 0}
 
 
+def warned(folder: Path, x: int) -> dict[str, Any]:
+    """Warn, each time anew, and fail."""
+    for text in ("first", "second\nof two lines", "first"):
+        warnings.warn(text, stacklevel=1)
+    raise ValueError("in the end")
+
+
 def counted(folder: Path, x: int) -> dict[str, Any]:
     """Fail for x = 2, until a file appears."""
     with open("runs", "a") as file:
@@ -135,7 +143,7 @@ def fail(folder: Path, way: str) -> Any:
         time.sleep(SECONDS_TOO_LONG)
     if way == "slow":
         time.sleep(1.5)
-    return {"list": [1, 2], "array": {"a": np.zeros(2)}}.get(way)
+    return {"list": [1, 2], "array": {"a": np.zeros(2), "b": np.float64(2.5)}}.get(way)
 
 
 def fail_on_rank_1(folder: Path, way: str) -> None:

@@ -31,6 +31,7 @@ def two_balls(gap: float = 1e-3, v: float = 0.0) -> Grains:
         ({"tol": 0.0}, r"tol = 0 must be > 0"),
         ({"tol": -1e-7}, r"tol = -1e-07 must be > 0"),
         ({"tol": 0.11, "criterion": "natural"}, r"tol = 0\.11 must be <= 0\.1 with criterion natural"),
+        ({"tol": 0.2, "criterion": None}, r"tol = 0\.2 must be <= 0\.1 .* in velocity units has `criterion paper`"),
         ({"tol": math.inf}, r"tol = inf must be"),
         ({"maxiter": 0}, r"maxiter = 0 must be at least 1"),
         ({"maxiter": -5}, r"maxiter = -5 must be at least 1"),
@@ -78,9 +79,15 @@ def test_keyword_that_does_not_exist_is_refused(start):
         ("wall plane 0 0 0 0 0", "wall needs a value"),
         ("wall plane 0 0 0 0 up 1", r"wall.*'up' is not a number"),
         ("wall sphere 0 0 0 1", r"unknown wall 'sphere': choose plane"),
+        ("tol 1e-3 law gap tol 1e-4", "keyword tol is given twice"),
+        ("friction 0.5 stick", "keyword stick is a friction, which is given twice"),
+        ("wall plane 0 0 0 0 0 1 restitution 0.5", "restitution right behind a wall .* Give it before the walls"),
+        ("friction 0.1 wall plane 0 0 0 0 0 1 friction 0.5 e_t 0.5", "e_t right behind a wall"),
+        ("wall plane 0 0 0 0 0 1 friction 0.5 stick", "the wall has its friction already"),
+        ("law gap paper yes", "paper behind law would override it: give paper first"),
     ],
 )
-def test_keyword_without_its_values_is_refused(start, words, message):
+def test_keyword_without_its_values_or_in_a_wrong_place_is_refused(start, words, message):
     lmp = start(two_balls(), 1e-4)
     with pytest.raises(Exception, match=message):
         lmp.command(f"fix nscd all nscd {words}")

@@ -129,6 +129,18 @@ def test_run_sets_variables_as_lmp_does(write_script, capsys):
     assert "next 2\n" in log
 
 
+def test_run_refuses_a_variable_without_a_value(write_script, capsys):
+    assert cli.main(["run", write_script("run 1"), "-var", "n", "--screen"]) == 1
+    assert "-var n has no value: write -var NAME VALUE" in capsys.readouterr().err
+
+
+def test_run_takes_a_script_that_begins_with_a_byte_order_mark(write_script, capsys):
+    script = Path(write_script("run 3"))
+    script.write_text(script.read_text().lstrip(), encoding="utf-8-sig")
+    assert cli.main(["run", str(script)]) == 0
+    assert table_value(capsys.readouterr().out, "steps") == "3"
+
+
 def test_run_screen_shows_what_lammps_prints(write_script, capfd):
     assert cli.main(["run", write_script('print "seen by the user"\nrun 3'), "--screen"]) == 0
     shown = capfd.readouterr().out

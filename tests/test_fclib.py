@@ -212,6 +212,34 @@ def test_other_files_are_refused(tmp_path: Path) -> None:
         read_fclib(tmp_path / "text")
 
 
+def test_damaged_files_are_refused(tmp_path: Path) -> None:
+    good = by_hand(tmp_path / "good.hdf5").read_bytes()
+    bad = tmp_path / "bad.hdf5"
+    random = np.random.default_rng(1)
+    damaged = [good[:size] for size in range(600, len(good), 997)]
+    for _ in range(200):  # a bit turned; most are in numbers, or in room that nothing uses
+        place = int(random.integers(len(good)))
+        damaged.append(good[:place] + bytes([good[place] ^ 1 << int(random.integers(8))]) + good[place + 1 :])
+    told = 0
+    for content in damaged:
+        bad.write_bytes(content)
+        for read in (read_fclib, read_fclib_solution):
+            try:
+                read(bad)
+            except NscdError as error:
+                told += "is damaged, HDF5 cannot read all of it" in str(error)
+    assert told > 20
+
+
+def test_texts_may_be_none_and_must_be_strings(tmp_path: Path) -> None:
+    write_fclib(tmp_path / "a.hdf5", GIVEN.problem(0.3), title=None)
+    with h5py.File(tmp_path / "a.hdf5") as file:
+        assert file["fclib_local/info/title"][()] == b""
+    with pytest.raises(NscdError, match="title is of type int and must be a string"):
+        write_fclib(tmp_path / "b.hdf5", GIVEN.problem(0.3), title=5)  # type: ignore[arg-type]
+    assert not (tmp_path / "b.hdf5").exists()
+
+
 def test_without_h5py_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = by_hand(tmp_path / "a.hdf5")
     monkeypatch.setitem(sys.modules, "h5py", None)

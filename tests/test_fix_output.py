@@ -34,7 +34,7 @@ neighbor 0.2 nsq
 timestep {DT}
 fix gravity all gravity {GRAVITY} vector 0 0 -1
 """
-FIX = "fix nscd all nscd tol 1e-12 maxiter 10000 wall plane 0 0 0 0 0 1 wall plane 4 0 0 -1 0 0"
+FIX = "fix nscd all nscd criterion paper tol 1e-12 maxiter 10000 wall plane 0 0 0 0 0 1 wall plane 4 0 0 -1 0 0"
 WAYS = ("process", "lmp")
 
 

@@ -210,7 +210,7 @@ def test_ghosts_need_no_velocities_or_spins_of_their_own(start, door):
 @pytest.mark.parametrize(("keywords", "columns"), [("friction 0.3", 13), ("stick e_t 0.1", 13), ("", 10)])
 def test_dump_local_has_13_columns_with_friction_and_10_without(start, tmp_path, keywords, columns):
     lmp = start(grains((0, 0, 0.5), 0.5, mass=2.0, v=(1.0, 0, 0)), 1e-3, gravity=GRAVITY, vmax=4.0)
-    lmp.command(f"fix nscd all nscd {keywords} tol 1e-12 wall plane 0 0 0 0 0 1")
+    lmp.command(f"fix nscd all nscd {keywords} criterion paper tol 1e-12 wall plane 0 0 0 0 0 1")
     names = [f"f_nscd[{column}]" for column in range(1, columns + 1)]
     with pytest.raises(Exception, match="nscd vector is accessed out-of-range"):
         lmp.command(f"dump more all local 1 {tmp_path / 'more'} f_nscd[{columns + 1}]")
@@ -265,7 +265,7 @@ def test_log_and_description_tell_model_and_friction(start, tmp_path, door, plan
         ("wall plane 0 0 0 0 0 1 friction stick", "friction 0, stick on wall 1;"),
         ("wall plane 0 0 0 0 0 1 stick", "friction 0, stick on wall 1;"),
         ("wall plane 0 0 0 0 0 1 tol 1e-9 friction 0.1", "friction 0.1;"),
-        ("stick wall plane 0 0 0 0 0 1 friction 0.1 friction 0.2", "friction 0.2, 0.1 on wall 1;"),
+        ("friction 0.2 wall plane 0 0 0 0 0 1 friction 0.1", "friction 0.2, 0.1 on wall 1;"),
     ],
 )
 def test_friction_right_behind_a_wall_is_the_wall_s(start, tmp_path, words, said):

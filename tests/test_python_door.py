@@ -19,7 +19,7 @@ def test_contacts_tell_point_normal_gap_and_impulse(start):
     lmp = start(grains((0, 0, 0.5), 0.5, mass=mass), dt)
     steep = nscd_lmp.Plane(np.array([0, 0, 0.5]) - 0.5 * slope, slope)
     lmp.command(f"fix push all addforce {-5 * slope[0]} 0 {-7 * slope[2]}")
-    attached = nscd_lmp.attach(lmp, walls=[FLOOR, steep], tol=1e-13)
+    attached = nscd_lmp.attach(lmp, walls=[FLOOR, steep], criterion="paper", tol=1e-13)
     lmp.command("run 2")
     contacts = attached.contacts
     assert contacts["tag_i"].tolist() == [1, 1]
@@ -35,10 +35,28 @@ def test_contacts_tell_point_normal_gap_and_impulse(start):
     np.testing.assert_allclose(contacts["impulse"][order], balance, rtol=0, atol=mass * 1e-12)
 
 
+def test_stats_are_read_without_copying_what_was_read_and_keep_their_rows(start):
+    lmp = start(grains((0, 0, 0.5), 0.5, v=(0.1, 0, 0)), 1e-3, gravity=GRAVITY, vmax=4.0)
+    attached = nscd_lmp.attach(lmp, walls=[FLOOR])
+    assert len(attached.stats) == 0
+    seen = []
+    for steps in (3, 1, 40, 0, 2):
+        lmp.command(f"run {steps} post no")
+        seen.append((attached.stats, attached.stats.copy()))
+    for view, copy in seen:
+        np.testing.assert_array_equal(view, copy)
+        assert not view.flags.writeable
+    last = attached.stats
+    assert last["step"].tolist() == list(range(1, 47))
+    assert np.shares_memory(last, attached.stats)  # nothing is copied where no step was taken
+    attached.detach()
+    np.testing.assert_array_equal(attached.stats, last)
+
+
 def test_contact_between_grains_lies_between_them(start):
     normal = np.array([2.0, -1.0, 2.0]) / 3
     lmp = start(grains([0.7 * normal, (0, 0, 0)], [0.2, 0.5], v=[-normal, (0, 0, 0)]), 1e-4)
-    attached = nscd_lmp.attach(lmp, tol=1e-12)
+    attached = nscd_lmp.attach(lmp, criterion="paper", tol=1e-12)
     lmp.command("run 1")
     contacts = attached.contacts
     sign = 1 if contacts["tag_i"][0] == 1 else -1  # the normal points from j to i
@@ -116,7 +134,7 @@ def test_python_solver_that_is_wrong_is_counted_as_not_converged(start):
 
 def test_stats_have_a_row_a_step_with_the_seconds(start):
     lmp, balls, walls = small_bed(start, "f f f")
-    attached = nscd_lmp.attach(lmp, walls=walls, law="moreau", tol=1e-7)
+    attached = nscd_lmp.attach(lmp, walls=walls, law="moreau", criterion="paper", tol=1e-7)
     assert len(attached.stats) == 0
     lmp.command("run 200")
     lmp.command("run 100")

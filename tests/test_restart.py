@@ -61,7 +61,7 @@ def lines(folder: Path, ranks: int, dump: str, **blanks: str) -> list[list[float
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_restart_on_the_same_number_of_ranks_goes_on_with_the_same_bits(tmp_path: Path, ranks: int) -> None:
     through = "run 300\nwrite_restart fall.restart\nrun 5"
-    settings = "friction 0.1 tol 1e-6"
+    settings = "friction 0.1 criterion paper tol 1e-6"
     straight = lines(tmp_path, ranks, "straight.dump", grains=CLOUD, warmstart="yes", run=through, settings=settings)
     again = {"grains": "read_restart fall.restart", "run": "run 5", "settings": settings}
     assert lines(tmp_path, ranks, "restarted.dump", warmstart="yes", **again) == straight
@@ -71,7 +71,7 @@ def test_restart_on_the_same_number_of_ranks_goes_on_with_the_same_bits(tmp_path
 
 def test_restart_on_another_number_of_ranks_goes_on_within_the_tolerance(tmp_path: Path) -> None:
     through = "run 300\nwrite_restart fall.restart\nrun 1"
-    exact = {"warmstart": "yes", "settings": "tol 1e-10"}
+    exact = {"warmstart": "yes", "settings": "criterion paper tol 1e-10"}
     straight = lines(tmp_path, 1, "straight.dump", grains=CLOUD, run=through, **exact)
     restarted = lines(tmp_path, 2, "two.dump", grains="read_restart fall.restart", run="run 1", **exact)
     np.testing.assert_allclose(restarted, straight, rtol=0, atol=2e-6)
@@ -95,7 +95,7 @@ def killed(folder: Path, ranks: int, when_there_is: str, **blanks: str) -> None:
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_killed_run_goes_on_from_its_last_restart(tmp_path: Path, ranks: int) -> None:
     """Within tol: a run that is set up sorts its atoms, one that only writes a restart does not."""
-    settings = {"warmstart": "yes", "settings": "friction 0.1 tol 1e-6"}
+    settings = {"warmstart": "yes", "settings": "friction 0.1 criterion paper tol 1e-6"}
     through = "restart 100 fall.*.restart\nrun {}"
     straight = lines(tmp_path, ranks, "straight.dump", grains=CLOUD, run=through.format(400), **settings)
     for file in tmp_path.glob("fall.*.restart"):
@@ -112,7 +112,7 @@ def test_fix_balance_moves_grains_and_their_impulses(tmp_path: Path) -> None:
     weights = 'variable w atom "1+20*((x<1.5e-3)!=(step%10<5))"\n'
     weights += "fix balance all balance 5 1.0 shift x 10 1.01 weight var w"
     watch = "thermo 1\nthermo_style custom step f_nscd f_nscd[1] f_nscd[8]\nrun 20"
-    exact = {"warmstart": "yes", "settings": "tol 1e-10"}
+    exact = {"warmstart": "yes", "settings": "criterion paper tol 1e-10"}
     lines(tmp_path, 1, "start.dump", grains=CLOUD, run="run 300\nwrite_restart fall.restart", **exact)
     start = "read_restart fall.restart"
     alone = lines(tmp_path, 1, "one.dump", grains=start, run=watch, **exact)

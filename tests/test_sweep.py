@@ -38,7 +38,7 @@ def test_grid_over_a_script_has_a_row_for_each_point_in_order(script):
     ]
     assert sweep_cases.statuses(table) == ["ok"] * 4
     assert table["steps"].tolist() == [200, 100] * 2
-    assert table.columns[-4:] == ["status", "seconds", "message", "folder"]
+    assert table.columns[-5:] == ["status", "seconds", "message", "warnings", "folder"]
     for row in table:
         home = Path("out", f"n={row['n']}_dt={row['dt']}")
         assert row["folder"] == str(home)
@@ -137,6 +137,36 @@ def test_command_prints_a_table_and_exits_1_after_failures(script, capsys):
     assert "4 of 4 cases are there already" in capsys.readouterr().err
 
 
+def test_warnings_of_lammps_and_of_python_reach_the_row(script):
+    table = nscd_lmp.sweep(script, {"law": ["gap", "moreau"]}, folder="out", progress=False)
+    assert table.rows[0]["warnings"] == ""
+    assert "WARNING: Fix nscd hard: grains overlap by up to" in table.rows[1]["warnings"]
+    assert "(" not in table.rows[1]["warnings"]  # no places in the code of LAMMPS
+    again = nscd_lmp.sweep(script, {"law": ["gap", "moreau"]}, folder="out", progress=False)
+    assert again.rows == table.rows
+    table = nscd_lmp.sweep(sweep_cases.warned, {"x": [1]}, folder="warned", progress=False)
+    assert table.rows[0]["warnings"] == "first; second of two lines"
+    assert table.rows[0]["status"] == "failed" and table.path.read_text().count("first; second") == 1
+
+
+def test_script_with_includes_runs_from_any_folder(script, tmp_path, monkeypatch):
+    Path("inputs/parts").mkdir(parents=True)
+    Path("inputs/parts/middle").write_text("include inputs/parts/last\n")
+    Path("inputs/parts/last").write_text("variable height equal c_middle[3]\n")
+    text = sweep_cases.SCRIPT.replace("variable height equal c_middle[3]", "include inputs/${part}")
+    Path("inputs/in.fall").write_text("variable part index parts/middle\n" + text)
+    Path("else where").mkdir()
+    for folder in ("else where", "."):
+        monkeypatch.chdir(tmp_path / folder)
+        path = tmp_path / "inputs" / "in.fall"
+        table = nscd_lmp.sweep(path, {"n": [20]}, folder="out", results=["v_height"], progress=False)
+        assert sweep_cases.statuses(table) == ["ok"], table.rows[0]["message"]
+        assert Path("out/n=20/dump.last").exists()
+        if folder == ".":  # where the script finds all by itself, it is run as it is
+            assert not list(Path("out/n=20").glob("in.*"))
+    assert not list((tmp_path / "inputs").glob("*dump*"))
+
+
 def test_command_takes_cases_of_a_file_and_functions(capsys):
     Path("cases.csv").write_text("base,exponent\n2,3\n10,0.5\n")
     function = f"{sweep_cases.__file__}:power"
@@ -144,6 +174,12 @@ def test_command_takes_cases_of_a_file_and_functions(capsys):
     assert [row.split(",")[:4] for row in Path("out/sweep.csv").read_text().splitlines()[1:]] == [
         ["2", "3", "1", "9.0"], ["10", "0.5", "1", str(10**0.5 + 1)],
     ]  # fmt: skip
+    # as spreadsheets save it
+    Path("cases.csv").write_text("base,exponent\n2,3\n10,0.5\n", encoding="utf-8-sig")
+    assert cli.main(["sweep", function, "--cases", "cases.csv", "--folder", "out", "--set", "add=1"]) == 0
+    Path("cases.csv").write_text("base,exponent,base\n2,3,4\n")
+    assert cli.main(["sweep", function, "--cases", "cases.csv", "--folder", "out"]) == 1
+    assert "'cases.csv' has the column 'base' twice" in capsys.readouterr().err
     Path("cases.csv").write_text("base,exponent\n2\n")
     assert cli.main(["sweep", function, "--cases", "cases.csv", "--folder", "out"]) == 1
     assert "line 2 of 'cases.csv'" in capsys.readouterr().err

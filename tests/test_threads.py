@@ -79,7 +79,7 @@ def attached(steps: int = 2, **settings: Any) -> tuple[NDArray[np.float64], nscd
 
 
 # Impacts are in tests/core: in later steps, thresholds decide who meets whom.
-@pytest.mark.parametrize("words", ["tol 1e-9", "tol 1e-9 friction 0.01"])
+@pytest.mark.parametrize("words", ["criterion paper tol 1e-9", "criterion paper tol 1e-9 friction 0.01"])
 @pytest.mark.parametrize("threads", [2, 3])
 def test_threads_give_the_velocities_of_one(tmp_path: Path, words: str, threads: int) -> None:
     one = velocities(tmp_path, words)
@@ -90,16 +90,16 @@ def test_threads_give_the_velocities_of_one(tmp_path: Path, words: str, threads:
 
 
 def test_same_number_of_threads_gives_the_same_bits_in_both_doors(tmp_path: Path) -> None:
-    first, second = (velocities(tmp_path, "tol 1e-9 threads 3") for _ in range(2))
-    python, _ = attached(tol=1e-9, threads=3)
+    first, second = (velocities(tmp_path, "criterion paper tol 1e-9 threads 3") for _ in range(2))
+    python, _ = attached(criterion="paper", tol=1e-9, threads=3)
     assert np.array_equal(first, second)
     assert np.array_equal(first[:, 1:], python)
 
 
 def test_threads_work_on_each_of_two_ranks(tmp_path: Path) -> None:
-    one = velocities(tmp_path, "tol 1e-9")
-    both = velocities(tmp_path, "tol 1e-9 threads 2", ranks=2)
-    again = velocities(tmp_path, "tol 1e-9 threads 2", ranks=2)
+    one = velocities(tmp_path, "criterion paper tol 1e-9")
+    both = velocities(tmp_path, "criterion paper tol 1e-9 threads 2", ranks=2)
+    again = velocities(tmp_path, "criterion paper tol 1e-9 threads 2", ranks=2)
     assert np.array_equal(both, again)
     np.testing.assert_allclose(both, one, rtol=0, atol=2e-6)
 

@@ -131,7 +131,8 @@ def make(name: str, folder: Path, size: Size = Size.FULL, processes: int = 1, pr
     code = fingerprint(made)
     panels = made.PANELS if size is Size.FULL else (ALL,)  # a process starts in the time of many quick cells
     cases = [{"map": name, "panel": panel, "size": size.value, "code": code} for panel in panels]
-    table = sweep(run_panel, cases=cases, folder=folder / name, processes=processes, progress=progress)
+    home = folder / name
+    table = sweep(run_panel, cases=cases, folder=home, processes=processes, stale="rerun", progress=progress)
     cells = [cell for row in table if row["status"] == "ok" for cell in _read_table(Path(row["folder"]) / CELLS)]
     if not cells:
         raise NscdError(f"no cell of map {name} has run: {_first_message(table)}")

@@ -2,6 +2,7 @@
 
 #include "arrays.hpp"
 
+#include "../core/doubts.hpp"
 #include "../core/error.hpp"
 
 #include <algorithm>
@@ -112,6 +113,20 @@ void ExternalFix::find_homes(const Grains &g)
       find_homes_(x, tags(g.owned, g.ghosts), tags(0, g.owned)));
   homes_.assign(homes.data(), homes.data() + homes.shape(0));
   homes_.push_back(0);  // so that it is not empty where there are no images
+}
+
+std::vector<std::string> ExternalFix::doubts() const
+{
+  Grains g;
+  g.owned = setting("nlocal");
+  g.radius = library_.per_atom<double>("radius");
+  g.mass = library_.per_atom<double>("rmass");
+  g.tag = library_.per_atom<std::int32_t>("id");
+  g.mask = library_.per_atom<int>("mask");
+  g.group = group_bit_;
+  const bool spheres = setting("radius_flag") == 1 && setting("rmass_flag") == 1 && setting("tagint") == 4;
+  if (timestep() != 0 || !spheres) return {};
+  return nscd::doubts(g, library_.get_natoms(library_.handle), ranks_.get());
 }
 
 Grains ExternalFix::grains()

@@ -37,8 +37,10 @@ class ExternalFix {
   void invoke(nanobind::handle lammps, int vflag);
 
   const Step &step() const { return step_; }
-  const std::vector<StatsRow> &stats() const { return stats_; }
+  // Hands over the rows since the last call.
+  std::vector<StatsRow> take_stats() { return std::exchange(stats_, {}); }
   std::vector<std::string> take_remarks() { return step_.take_remarks(); }
+  std::vector<std::string> doubts() const;  // about a scene before its first step
   void set_cutoff(double cutoff) { cutoff_ = cutoff; }
 
   // What stopped the run; empty if nothing did. Reading it forgets it.

@@ -108,9 +108,10 @@ nscd::Library make_library(const nb::dict &addresses)
   return library;
 }
 
-nb::bytes stats_bytes(const ExternalFix &fix)
+nb::bytes take_stats(ExternalFix &fix)
 {
-  return nb::bytes(reinterpret_cast<const char *>(fix.stats().data()), fix.stats().size() * sizeof(nscd::StatsRow));
+  const std::vector<nscd::StatsRow> rows = fix.take_stats();
+  return nb::bytes(reinterpret_cast<const char *>(rows.data()), rows.size() * sizeof(nscd::StatsRow));
 }
 
 nb::ndarray<nb::numpy, double> contact_rows(const ExternalFix &fix)
@@ -189,12 +190,13 @@ void bind_external_fix(nb::module_ &m)
       .def_prop_ro("callback_address", [](const ExternalFix &) { return std::uintptr_t(&ExternalFix::callback); })
       .def_prop_ro("self_address", [](const ExternalFix &fix) { return std::uintptr_t(&fix); })
       .def("invoke", &ExternalFix::invoke)
+      .def("doubts", &ExternalFix::doubts)
       .def_prop_ro("crowding", [](const ExternalFix &fix) { return fix.step().crowding(); })
       .def("set_cutoff", &ExternalFix::set_cutoff, "cutoff"_a)
       .def_prop_ro("failed", &ExternalFix::failed)
       .def("take_remarks", &ExternalFix::take_remarks)
       .def("raise_failure", [](ExternalFix &fix) { if (auto e = fix.take_failure()) std::rethrow_exception(e); })
-      .def("stats_bytes", &stats_bytes)
+      .def("take_stats", &take_stats)
       .def("traffic", &traffic)
       .def("contact_rows", &contact_rows)
       .def("describe", [](const ExternalFix &fix) { return nscd::describe(fix.step()); });

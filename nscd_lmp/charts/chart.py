@@ -8,7 +8,7 @@ import io
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, Literal
 
 import nscd_lmp
 from nscd_lmp import NscdError
@@ -21,7 +21,7 @@ from nscd_lmp.sweeps.record import write_text
 
 Row = dict[str, Any]
 
-LEFT_OUT = ("seconds", "folder")  # columns of the sweep's table that say nothing of the chart
+LEFT_OUT = ("seconds", "folder", "warnings")  # columns of the sweep's table that say nothing of the chart
 TEXT = ("chart", "method", "status", "message", "version", "processor", "size")
 
 
@@ -58,6 +58,7 @@ def make(
     ranks: int = 1,
     timeout: float | None = None,
     retry: bool = False,
+    stale: Literal["refuse", "keep", "rerun"] = "refuse",
     progress: bool = True,
 ) -> Chart:
     """Run what a chart has not got yet, and draw it.
@@ -71,7 +72,7 @@ def make(
     size : Size
     processes : int
         Cases side by side. They share memory and caches: take 1 where seconds are to be published.
-    ranks, timeout, retry, progress
+    ranks, timeout, retry, stale, progress
         As of :func:`nscd_lmp.sweep`.
     """
     scene = find_scene(name)
@@ -83,6 +84,7 @@ def make(
         ranks=ranks,
         timeout=timeout,
         retry=retry,
+        stale=stale,
         progress=progress,
     )
     origin = {"size": size.value, "version": nscd_lmp.__version__, "processor": _processor()}

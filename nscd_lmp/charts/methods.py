@@ -135,7 +135,7 @@ def start(
     method : Method or str
         Or its name in :data:`METHODS`.
     case : mapping
-        ``dt`` (s); ``tol`` (m/s), ``overlap`` or both of a rigid method; ``stiffness`` (N/m)
+        ``dt`` (s); ``tol`` (m/s, of criterion (42)), ``overlap`` or both of a rigid method; ``stiffness`` (N/m)
         of a penalty method, for hertz that of the spring which an impact of two mean grains at `speed` compresses as
         far (:func:`penalty.hertz_stiffness`).
     walls : sequence of Plane
@@ -192,7 +192,8 @@ def _rigid_commands(
     e_t: float | None,
     options: str,
 ) -> list[str]:
-    solved = " ".join(f"{name} {case[name]!r}" for name in ("tol", "overlap") if name in case)
+    solved = "criterion paper " * ("tol" in case)
+    solved += " ".join(f"{name} {case[name]!r}" for name in ("tol", "overlap") if name in case)
     words = [f"law {method.law} solver {method.solver} restitution {restitution!r} {solved}"]
     if friction:
         words.append(f"friction {friction}")

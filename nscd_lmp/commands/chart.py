@@ -14,6 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from nscd_lmp.commands._script_run import ScriptError
+from nscd_lmp.sweeps.earlier import CHOICES, REFUSE
 
 ALL = "all"
 MOST_MESSAGES = 5
@@ -32,6 +33,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--ranks", type=int, default=1, metavar="N", help="MPI ranks of each case [1]")
     parser.add_argument("--timeout", type=float, metavar="S", help="stop a case after so many seconds")
     parser.add_argument("--retry", action="store_true", help="run again what failed earlier")
+    parser.add_argument(
+        "--stale", choices=CHOICES, default=REFUSE, help="runs of earlier code: as of nscd-lmp sweep [refuse]"
+    )
 
 
 def main(arguments: argparse.Namespace) -> None:
@@ -65,6 +69,7 @@ def main(arguments: argparse.Namespace) -> None:
                 ranks=arguments.ranks,
                 timeout=arguments.timeout,
                 retry=arguments.retry,
+                stale=arguments.stale,
             )
         _report(console, made)
         failed += len(made.failures)

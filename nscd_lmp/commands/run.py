@@ -9,7 +9,7 @@ what the script writes at its end is written; Ctrl-C again ends at once.
 import argparse
 from pathlib import Path
 
-from nscd_lmp.commands._script_run import run_script
+from nscd_lmp.commands._script_run import ScriptError, run_script
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,4 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(arguments: argparse.Namespace) -> None:
     """Run the script."""
+    for name, *values in arguments.variables:
+        if not values:
+            raise ScriptError(f"-var {name} has no value: write -var NAME VALUE")
     run_script(arguments.script, arguments.variables, log=arguments.log, screen=arguments.screen)

@@ -20,6 +20,7 @@ from rich.text import Text
 from nscd_lmp.commands._script_run import ScriptError
 from nscd_lmp.sweep import sweep
 from nscd_lmp.sweeps.cases import OWN_COLUMNS
+from nscd_lmp.sweeps.earlier import CHOICES, REFUSE
 from nscd_lmp.sweeps.record import OK
 from nscd_lmp.sweeps.table import Row, SweepTable
 from nscd_lmp.sweeps.values import read_range, read_value, split_list
@@ -53,6 +54,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--ranks", type=int, default=1, metavar="N", help="MPI ranks of each case [1]")
     parser.add_argument("--timeout", type=float, metavar="S", help="stop a case after so many seconds")
     parser.add_argument("--retry", action="store_true", help="run again what failed earlier")
+    parser.add_argument(
+        "--stale",
+        choices=CHOICES,
+        default=REFUSE,
+        help="cases that were finished before a change of the code: say so and stop, keep their results, or run them"
+        " again and keep the old ones aside [refuse]",
+    )
     parser.add_argument("--allow-failures", action="store_true", help="exit with 0 though cases have failed")
 
 
@@ -76,12 +84,17 @@ def main(arguments: argparse.Namespace) -> None:
             timeout=arguments.timeout,
             results=results,
             retry=arguments.retry,
+            stale=arguments.stale,
         )
     varied = list(axes | (cases[0] if cases else {}))
     console = Console(highlight=False)
     console.print(closing_table(table, varied, [*fixed, *OWN_COLUMNS], list(results)))
     for row in table.failures[:MOST_MESSAGES]:
         console.print(f"{row['folder']}: {row['message']}", style="red", markup=False, soft_wrap=True)
+    warned = [row for row in table if row["warnings"]]
+    if warned:
+        first = f"{warned[0]['folder']}: {warned[0]['warnings']}"
+        console.print(f"{len(warned)} cases with warnings, in their column: {first}", markup=False, soft_wrap=True)
     console.print(str(table.path), markup=False, soft_wrap=True)
     if table.failures and not arguments.allow_failures:
         raise ScriptError(f"{len(table.failures)} of {len(table)} cases have failed: --retry runs them again")
@@ -132,8 +145,13 @@ def _result(text: str) -> tuple[str, str]:
 
 
 def _read_cases(path: Path) -> list[dict[str, Any]]:
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    with open(path, newline="", encoding="utf-8-sig") as file:
+        reader = csv.DictReader(file)
+        rows = list(reader)
+    head = reader.fieldnames or []
+    twice = sorted({name for name in head if head.count(name) > 1})
+    if twice:
+        raise ScriptError(f"'{path}' has the column '{twice[0]}' twice: give each variable once")
     ragged = [number for number, row in enumerate(rows, 2) if None in row or None in row.values()]
     if ragged:
         raise ScriptError(f"line {ragged[0]} of '{path}' has not as many cells as its head: give each variable a value")

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <functional>
 #include <map>
+#include <set>
 
 namespace nscd {
 
@@ -35,8 +36,10 @@ class Words {
   {
     const std::string &text = word();
     Number value{};
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc() || end != text.data() + text.size())
+    const char *first = text.data(), *const last = first + text.size();
+    const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';  // which LAMMPS takes, and from_chars not
+    const auto [end, problem] = std::from_chars(first + plus, last, value);
+    if (problem != std::errc() || end != last)
       fail("keyword ", keyword_, ": '", text, "' is not ", wanted);
     return value;
   }
@@ -110,11 +113,33 @@ const std::map<std::string, Reader> &readers()
   return list;
 }
 
+// What `paper yes` sets.
+const std::set<std::string> of_paper{"solver", "law", "criterion", "tol", "warmstart"};
+
+// Refuses a keyword whose place makes it mean something else than it seems to; `given` are those before it, `last` the
+// one right before it.
+void refuse_misplaced(const std::string &keyword, const std::string &last, const std::set<std::string> &given)
+{
+  if (keyword != "wall" && given.count(keyword == "stick" ? "friction" : keyword))
+    fail("keyword ", keyword, keyword == "stick" ? " is a friction, which" : "", " is given twice: give it once");
+  if (last == "wall" && (keyword == "restitution" || keyword == "e_t"))
+    fail("keyword ", keyword, " right behind a wall would be that of all contacts: a wall has a friction of its own, "
+         "but no ", keyword, ". Give it before the walls");
+  if (last == "wall" && (keyword == "friction" || keyword == "stick"))
+    fail("the wall has its friction already, and keyword ", keyword, " behind it would be that of the pairs: give that "
+         "before the walls");
+  if (keyword != "paper") return;
+  for (const std::string &other : of_paper)
+    if (given.count(other)) fail("keyword paper behind ", other, " would override it: give paper first");
+}
+
 }    // namespace
 
 void parse_keywords(Settings &settings, const std::vector<std::string> &words)
 {
   Words rest(words);
+  std::set<std::string> given;
+  std::string last;
   while (!rest.done()) {
     const std::string keyword = rest.keyword();
     const auto reader = readers().find(keyword);
@@ -123,7 +148,10 @@ void parse_keywords(Settings &settings, const std::vector<std::string> &words)
       for (const auto &[known, unused] : readers()) choices += (choices.empty() ? "" : ", ") + known;
       fail("unknown keyword '", keyword, "': choose one of ", choices);
     }
+    refuse_misplaced(keyword, last, given);
     reader->second(settings, rest);
+    given.insert(keyword == "stick" ? "friction" : keyword);
+    last = keyword;
   }
 }
 

@@ -111,7 +111,7 @@ std::string describe(const Step &step)
   const Settings &s = step.settings();
   std::ostringstream text;
   text << "law " << s.law << ", " << (step.has_custom_solver() ? "a solver handed in" : describe_solver(s)) << ", tol "
-       << *s.tol << (s.criterion == Stop::natural ? " (natural map)" : "") << describe_overlap(s)
+       << *s.tol << (s.criterion == Stop::natural ? " (natural map)" : " (criterion paper)") << describe_overlap(s)
        << ", " << s.walls.size()
        << (s.walls.size() == 1 ? " wall" : " walls")
        << "; " << describe_model(s, step.state().friction) << "; " << describe_restitution(s)

@@ -123,17 +123,18 @@ void follow_paper(Settings &s)
   s.warmstart = false;
 }
 
+// A tol has the unit of its criterion, and giving one does not choose another criterion.
 static void choose_tolerance(Settings &s)
 {
-  if (!s.criterion) s.criterion = s.tol ? Stop::paper : Stop::natural;
-  const bool of_scene = !s.tol && *s.criterion == Stop::natural;
+  if (!s.criterion) s.criterion = Stop::natural;
+  const bool of_scene = *s.criterion == Stop::natural;
   if (of_scene && !s.overlap && find_law(s.law).make()->looks_ahead()) s.overlap = overlap_of_scene;
   if (!s.tol) s.tol = of_scene ? tol_of_scene : tol_of_paper;
   if (!(*s.tol > 0 && std::isfinite(*s.tol)))
     fail("tol = ", *s.tol, " must be > 0: it is the value of the criterion at which a step is solved");
   if (s.criterion == Stop::natural && *s.tol > residual_worth_saying)
     fail("tol = ", *s.tol, " must be <= ", residual_worth_saying, " with criterion natural: it is a share of the "
-         "velocities that contacts have to stop");
+         "velocities that contacts have to stop. A tolerance in velocity units has `criterion paper` beside it");
 }
 
 static void check_overlap(const Settings &s)

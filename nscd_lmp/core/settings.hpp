@@ -36,7 +36,7 @@ struct Settings {
   double friction = 0;           // Coulomb's mu of pairs, and of walls without their own; may be `stick`
   double e_t = 0;                // tangential restitution, 0..1
   std::optional<Inertia> inertia;  // none: disc in dimension 2, sphere otherwise
-  // On the criterion. Without both: natural, relative to the scene's own velocities; with tol alone: paper, in m/s.
+  // On the criterion. None: natural, relative to the scene's own velocities; a tol of criterion paper is in m/s.
   std::optional<double> tol;
   std::optional<Stop> criterion;
   std::optional<double> overlap;   // of the smallest radius: what a contact may be driven into another in a step
@@ -55,7 +55,8 @@ struct Settings {
   bool frictional() const;
 };
 
-// Reads `keyword value ...` as fix nscd takes them; raises Error for an unknown keyword or a value that is no number.
+// Reads `keyword value ...` as fix nscd takes them; raises Error for an unknown keyword, one that is given twice or
+// stands where it would not mean what it seems to, or a value that is no number.
 void parse_keywords(Settings &settings, const std::vector<std::string> &words);
 
 // A single contact of a solved step misses the mean criterion by about so many times `tol`.

@@ -1,5 +1,6 @@
 #include "fix_nscd.hpp"
 
+#include "../core/doubts.hpp"
 #include "../core/error.hpp"
 #include "progress.hpp"
 
@@ -124,11 +125,21 @@ void FixNscd::init()
     if (utils::strmatch(other->style, "^ave/") || utils::strmatch(other->style, "^vector")) rows_every_step_ = true;
 }
 
+// Before the first step of a scene, once.
+void FixNscd::tell_doubts()
+{
+  if (doubted_ || update->ntimestep != 0 || !atom->rmass_flag) return;
+  doubted_ = true;
+  for (const std::string &doubt : nscd::doubts(grains(), double(atom->natoms), &ranks_))
+    if (comm->me == 0) error->warning(FLERR, "Fix nscd {}: {}", id, doubt);
+}
+
 void FixNscd::setup(int /*vflag*/)
 {
   find_list();
   step_->begin_run(neighbor->ago == 0);
   steps_ = 0;
+  tell_doubts();
   nscd_progress.begin_run(update->beginstep, update->endstep, update->ntimestep);
   if (comm->me != 0) return;
   if (!step_->crowding().empty()) error->warning(FLERR, "Fix nscd {}: {}", id, step_->crowding());

@@ -39,6 +39,7 @@ class FixNscd : public Fix {
   void check_integrators();
   void measure_list_reach();
   void find_list();
+  void tell_doubts();
   nscd::Grains grains();
   nscd::PairList pairs();
   void find_homes();
@@ -55,6 +56,7 @@ class FixNscd : public Fix {
   std::vector<double *> local_rows_;
   double list_reach_ = 0;
   bool rows_every_step_ = false;
+  bool doubted_ = false;
   nscd::Totals totals_;
   nscd::RestartRecords records_;
   int largest_record_ = 0;              // of all ranks

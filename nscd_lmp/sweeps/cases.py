@@ -17,7 +17,7 @@ Variables = dict[str, Any]
 LONGEST_NAME = 120  # characters; file systems take 255 bytes
 # LAMMPS gives * and % a meaning in names of files, and commas one in formulas; shells give many.
 UNSAFE = re.compile(r"[^A-Za-z0-9_.+=-]+")
-OWN_COLUMNS = ("status", "seconds", "message", "folder")
+OWN_COLUMNS = ("status", "seconds", "message", "warnings", "folder")
 
 
 @dataclass(frozen=True)

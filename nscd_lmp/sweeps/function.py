@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import importlib
 import inspect
 import runpy
@@ -13,6 +12,7 @@ from typing import Any
 
 from nscd_lmp._core import NscdError
 from nscd_lmp.sweeps.cases import Case
+from nscd_lmp.sweeps.code import code_of
 
 Function = Callable[..., Any]
 RUN_NAME = "__nscd_sweep__"  # not __main__: what a file does as a program is left out
@@ -33,7 +33,7 @@ class FunctionTask:
             self.module, self.file, self.function = _reference(function)
             self.called = function
         self.name = f"{self.module or Path(str(self.file)).name}:{self.function}"
-        self.content = hashlib.sha256(_source(self.called).encode()).hexdigest()
+        self.code = code_of(self.called, self.function)
 
     def check(self, cases: Sequence[Case], folder: Path) -> None:
         """Refuse variables that the function does not take."""
@@ -45,9 +45,9 @@ class FunctionTask:
                     f"{self.name} cannot be called as {self.function}(folder, {', '.join(case.variables)}): {error}"
                 ) from None
 
-    def key(self) -> dict[str, Any]:
-        """Return what, besides the variables, results depend on."""
-        return {"content": self.content}
+    def key(self, case: Case, folder: Path) -> dict[str, Any]:
+        """Return what, besides the variables, the results of a case depend on."""
+        return {"code": self.code}
 
     def spec(self, case: Case, folder: Path) -> dict[str, Any]:
         """Return what the worker has to know."""
@@ -135,10 +135,3 @@ def _reference(function: Function) -> tuple[str | None, str | None, str]:
             )
         module = None
     return module, str(Path(file).resolve()) if file else None, name
-
-
-def _source(function: Function) -> str:
-    try:
-        return inspect.getsource(function)
-    except (OSError, TypeError):
-        return repr(getattr(getattr(function, "__code__", None), "co_code", ""))

@@ -22,6 +22,8 @@ OUTPUT, ERRORS = "stdout.txt", "stderr.txt"
 WORKER = Path(__file__).with_name("worker.py")
 # What a launcher tells its own ranks; a case would take itself for one of them.
 LAUNCHED = re.compile(r"^(PMI|PMIX|HYDI|MPI_LOCAL|OMPI_COMM_WORLD|SLURM_PROCID)")
+WHERE = re.compile(r" \([\w./]+:\d+\)$")
+MOST_WARNINGS = 20
 FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
 
 
@@ -95,17 +97,27 @@ def _look(case: Running, timeout: float | None) -> dict[str, Any] | None:
     if case.process.returncode is None:
         _ask_to_end(case.process)
     _stop(case.process)
+    told = _warnings_of_lammps(case.folder)
     result = read_json(case.folder / RESULT)
-    if result is not None:
+    if result is not None and not told:
         return result
-    result = {"key": case.key, "results": {}, "seconds": seconds}
-    if late:
-        message = f"stopped after {timeout:g} s: give a larger timeout, or a smaller case"
-        result |= {"status": TIMEOUT, "timeout": timeout, "message": message}
-    else:
-        result |= _post_mortem(case)
+    if result is None:
+        result = {"key": case.key, "results": {}, "seconds": seconds}
+        if late:
+            message = f"stopped after {timeout:g} s: give a larger timeout, or a smaller case"
+            result |= {"status": TIMEOUT, "timeout": timeout, "message": message}
+        else:
+            result |= _post_mortem(case)
+    result["warnings"] = [*result.get("warnings", []), *told]
     write_json(case.folder / RESULT, result)
     return result
+
+
+def _warnings_of_lammps(folder: Path) -> list[str]:
+    """Return what LAMMPS has warned of on its screen, each once, without the places in its code."""
+    with open(folder / OUTPUT, encoding="utf-8", errors="replace") as file:
+        told = dict.fromkeys(WHERE.sub("", line.strip()) for line in file if line.startswith("WARNING: "))
+    return list(told)[:MOST_WARNINGS]
 
 
 def _post_mortem(case: Running) -> dict[str, Any]:

@@ -44,30 +44,29 @@ def read_json(path: Path) -> Any:
         return None
 
 
-def finished(folder: Path, key: dict[str, Any], *, retry: bool, timeout: float | None) -> dict[str, Any] | None:
-    """Return the result that an earlier sweep left of this very case, or None if it has to run.
+def read_result(folder: Path) -> dict[str, Any] | None:
+    """Return the result that an earlier sweep left in the folder of a case, or None."""
+    result = read_json(folder / RESULT)
+    return result if isinstance(result, dict) and isinstance(result.get("key"), dict) else None
+
+
+def finished(result: dict[str, Any] | None, *, retry: bool, timeout: float | None) -> bool:
+    """Return whether a case has ended and does not have to run again.
 
     Parameters
     ----------
-    folder : Path
-        Of the case.
-    key : dict
-        What the result depends on.
+    result : dict, optional
+        What :func:`read_result` found.
     retry : bool
         Run again what failed or took too long.
     timeout : float, optional
         Seconds that a case may take now; one that was stopped after less runs again.
     """
-    result = read_json(folder / RESULT)
-    if not isinstance(result, dict) or result.get("key") != key:
-        return None
-    status = result.get("status")
-    if status == OK:
-        return result
-    if retry or status not in (FAILED, TIMEOUT):
-        return None
+    status = result.get("status") if result else None
+    if result is None or status not in (OK, FAILED, TIMEOUT):
+        return False
     longer = status == TIMEOUT and (timeout is None or timeout > result["timeout"])
-    return None if longer else result
+    return status == OK or not (retry or longer)
 
 
 @contextmanager

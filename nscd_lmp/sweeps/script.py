@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import hashlib
 import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -25,7 +24,6 @@ class ScriptTask:
         self.script = script
         self.results = dict(results)
         self.name = script.name
-        self.content = hashlib.sha256(script.read_bytes()).hexdigest()
 
     def check(self, cases: Sequence[Case], folder: Path) -> None:
         """Refuse variables and folders that LAMMPS cannot take; warn of files that cases would share."""
@@ -38,13 +36,18 @@ class ScriptTask:
             raise NscdError(f"'{folder}' has a blank, which LAMMPS cannot take in names of files: give another folder")
         self._check_written(text, cases, folder)
 
-    def key(self) -> dict[str, Any]:
-        """Return what, besides the variables, results depend on."""
-        return {"content": self.content, "results": self.results}
+    def key(self, case: Case, folder: Path) -> dict[str, Any]:
+        """Return what, besides the variables, the results of a case depend on; `folder` is the case's."""
+        return {"code": ScriptText(self.script, _words(case, folder)).code(), "results": self.results}
 
     def spec(self, case: Case, folder: Path) -> dict[str, Any]:
-        """Return what the worker has to know."""
-        return {"script": str(self.script), "words": _words(case, folder / case.name), "results": self.results}
+        """Return what the worker has to know; a script that includes files from elsewhere gets a copy that finds them.
+
+        The copy is in the case's folder.
+        """
+        words = _words(case, folder / case.name)
+        script = ScriptText(self.script, words).placed(folder / case.name)
+        return {"script": str(script), "words": words, "results": self.results}
 
     def _check_used(self, text: ScriptText, cases: Sequence[Case]) -> None:
         used = text.used()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -47,16 +48,21 @@ class ScriptText:
     ----------
     commands : list of str
         Of all files, without comments.
+    files : dict
+        The commands of each file, by the path by which it was found.
     unread : list of str
         Files to include that were not found: their names depend on what happens in the run.
     """
 
     def __init__(self, script: Path, variables: Mapping[str, Any]) -> None:
         self.commands: list[str] = []
+        self.files: dict[Path, list[str]] = {}
         self.unread: list[str] = []
         self._values: dict[str, list[str]] = {}
         self._given = {name: str(value) for name, value in variables.items()}
         self._read: set[Path] = set()
+        self._script = script
+        self._elsewhere: dict[str, Path] = {}  # what is not in the working directory: name in the script -> its folder
         self._add(script)
 
     def used(self) -> set[str]:
@@ -82,11 +88,43 @@ class ScriptText:
                     files |= {name for name in self._resolve(found[1], given) if not REFERENCE.search(name)}
         return files - set(NOWHERE)
 
+    def code(self) -> dict[str, str]:
+        """Return hashes of the commands, by the names of the files; comments and layout do not count."""
+        texts: dict[str, str] = {}
+        for file, commands in self.files.items():
+            texts[file.name] = texts.get(file.name, "") + "\n".join(" ".join(one.split()) for one in commands)
+        return {name: hashlib.sha256(text.encode()).hexdigest()[:16] for name, text in texts.items()}
+
+    def placed(self, folder: Path) -> Path:
+        """Return a script to run from the working directory.
+
+        LAMMPS looks for files to include there. Where they were found beside the script or above it instead, `folder`
+        gets copies that name their places.
+        """
+        if not self._elsewhere:
+            return self._script
+        copies = {file.resolve(): folder / f"in.{k}.{file.name}" for k, file in enumerate(self.files)}
+        for file in self.files:
+            text = file.read_text(encoding="utf-8-sig", errors="replace")
+            text = INCLUDE.sub(lambda found: self._found_again(found, copies), text)
+            copies[file.resolve()].write_text(text, encoding="utf-8")
+        return copies[self._script.resolve()]
+
+    def _found_again(self, found: re.Match[str], copies: Mapping[Path, Path]) -> str:
+        """Return a command to include a file with the place of its copy, or if several may be meant of the file."""
+        name = found[1]
+        place = self._elsewhere.get(name, Path())
+        files = [place / one for one in self._resolve(name, self._given)]
+        known = [copies[file.resolve()] for file in files if file.resolve() in copies]
+        to = known[0] if len(known) == 1 else place / name
+        return found[0][: found.start(1) - found.start()] + str(to)
+
     def _add(self, file: Path) -> None:
         self._read.add(file.resolve())
-        lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
+        lines = file.read_text(encoding="utf-8-sig", errors="replace").splitlines()
         commands = split_commands("\n".join(COMMENT.sub(r"\1", line).rstrip() for line in lines))
         self.commands += commands
+        self.files[file] = commands
         for command in commands:
             for name, value in INDEX.findall(command):
                 self._values.setdefault(name, []).append(value)
@@ -97,9 +135,15 @@ class ScriptText:
     def _include(self, name: str) -> None:
         if name == "SELF":
             return
-        found = [Path(one) for one in self._resolve(name, self._given) if Path(one).is_file()]
+        names = self._resolve(name, self._given)
+        for place in (Path(), *self._script.resolve().parents):
+            found = [place / one for one in names if (place / one).is_file()]
+            if found:
+                break
         if not found:
             self.unread.append(name)
+        elif place != Path():
+            self._elsewhere[name] = place
         for file in found:
             if file.resolve() not in self._read:
                 self._add(file)

@@ -24,8 +24,8 @@ class SweepTable:
     Attributes
     ----------
     rows : list of dict
-        Variables, results, ``status``, ``seconds``, ``message`` and ``folder`` of each case; None where a case has no
-        such result.
+        Variables, results, ``status``, ``seconds``, ``message``, ``warnings`` and ``folder`` of each case; None where a
+        case has no such result.
     columns : list of str
         The keys that all rows have.
     path : Path
@@ -33,8 +33,7 @@ class SweepTable:
     """
 
     def __init__(self, rows: Sequence[Row], path: Path) -> None:
-        names = dict.fromkeys(name for row in rows for name in row)
-        self.columns: list[str] = [*(name for name in names if name not in OWN_COLUMNS), *OWN_COLUMNS]
+        self.columns = _columns(rows)
         self.rows: list[Row] = [{name: row.get(name) for name in self.columns} for row in rows]
         self.path = path
 
@@ -73,10 +72,16 @@ class SweepTable:
         """The rows whose status is not ``ok``."""
         return [row for row in self.rows if row["status"] != OK]
 
-    def write(self) -> None:
-        """Write the CSV file, all of it or nothing."""
+    def write(self, more: Sequence[Row] = ()) -> None:
+        """Write the CSV file, all of it or nothing; `more` are rows below those of the table."""
         text = io.StringIO()
-        writer = csv.DictWriter(text, self.columns, lineterminator="\n")
+        writer = csv.DictWriter(text, _columns([*self.rows, *more]), lineterminator="\n")
         writer.writeheader()
-        writer.writerows(self.rows)
+        writer.writerows([*self.rows, *more])
         write_text(self.path, text.getvalue())
+
+
+def _columns(rows: Sequence[Row]) -> list[str]:
+    """Return the names of all columns, those that every sweep has last."""
+    names = dict.fromkeys(name for row in rows for name in row)
+    return [*(name for name in names if name not in OWN_COLUMNS), *OWN_COLUMNS]

@@ -73,6 +73,22 @@ def test_rotation_uses_the_inertia_of_a_solid_sphere():
     assert compute_rotational_energy(omega, np.array([3.0]), np.array([0.1])) == pytest.approx(0.024)
 
 
+def test_discs_have_the_inertia_of_discs(write_dump):
+    frame = {
+        "x": [[0, 0, 0.5], [1, 0, 0.5]], "v": np.zeros((2, 3)), "omega": [[0, 0, 2], [0, 0, 0]],
+        "radius": [0.1, 0.1], "mass": [3, 3],
+    }  # fmt: skip
+    planar, spatial = Packing(write_dump(frame)), Packing(write_dump(frame | {"x": [[0, 0, 0], [1, 0, 1]]}, name="b"))
+    disc, sphere = 0.03, 0.024  # 1/2 I omega^2
+    for packing, inertia, energy, taken in (
+        (planar, "auto", disc, "disc"), (spatial, "auto", sphere, "sphere"),
+        (planar, "sphere", sphere, "sphere"), (spatial, "disc", disc, "disc"),
+    ):  # fmt: skip
+        history = compute_energy_history(packing, inertia=inertia)
+        assert history.rotational is not None
+        assert history.rotational[0] == pytest.approx(energy) and history.inertia == taken
+
+
 def test_density_stands_in_for_masses(write_dump):
     frame = {"x": [[0.0, 0.0, 0.0]], "v": [[1.0, 2.0, 2.0]], "radius": [0.5]}
     packing = Packing(write_dump(frame))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from contact_pairs import find_wall_contacts
 from overlap import compute_overlap_history, compute_overlaps, compute_resolution
 from packing import Packing
 
@@ -57,3 +58,14 @@ def test_history_has_zeros_where_nothing_overlaps(write_dump):
 def test_resolution_of_a_6_digit_dump_is_poor(write_dump):
     frame = Packing(write_dump(two_balls(1e-9), number="%g")).frame(0)
     assert compute_resolution(frame.x, frame.radius, digits=6) == pytest.approx(1.54e-4, rel=0.01)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_grains_that_are_nowhere_are_an_error_and_not_0_overlaps(value):
+    x = np.zeros((2, 3))
+    x[1, 2] = value
+    for planes in (None, [(0, 0, 0, 0, 0, 1)]):
+        with pytest.raises(ValueError, match=r"1 of 2 grains, the first of index 1, .* not a finite number"):
+            compute_overlaps(x, np.ones(2), np.array([(-1, 1)] * 3), NOWHERE, planes)
+    with pytest.raises(ValueError, match="not a finite number"):
+        find_wall_contacts(x, np.ones(2), [(0, 0, 0, 0, 0, 1)])

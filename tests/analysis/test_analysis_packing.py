@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gzip
+
 import numpy as np
 import pytest
 from packing import Packing, position_digits
@@ -87,6 +89,53 @@ def test_frame_cut_short_is_left_out(write_dump):
     path.write_text(path.read_text()[:60])
     with pytest.raises(ValueError, match="0 complete frames"):
         Packing(path)
+
+
+@pytest.mark.parametrize("column", ["x", "radius", "v", "omega", "mass"])
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_values_of_a_run_that_exploded_are_an_error(write_dump, column, value):
+    good = {**FRAME, "v": X, "omega": X, "mass": [1.0, 1.0]}
+    bad = {**good, column: np.array(good[column])}
+    bad[column][1] = value
+    packing = Packing(write_dump(good, bad, steps=[0, 700]))
+    np.testing.assert_array_equal(packing.frame(0).x, X)
+    with pytest.raises(ValueError, match=r"frame 1 \(step 700\) has .* of 1 of 2 grains that are not finite numbers"):
+        packing.frame(-1)
+
+
+def test_box_of_a_run_that_exploded_is_an_error(write_dump):
+    with pytest.raises(ValueError, match="the box of step 0 is not of finite numbers"):
+        Packing(write_dump(FRAME, bounds=((0, 1), (0, 1), (0, np.nan))))
+
+
+def test_damaged_dumps_are_errors_that_say_so(write_dump):
+    path = write_dump(FRAME, FRAME, FRAME)
+    text = path.read_text()
+    middle = text.index("ITEM: TIMESTEP", 10)
+    for wrong in (
+        text[: middle - 30] + text[middle:],  # a killed run, and another that went on
+        text[: middle + 40] + text[2 * middle :],
+        text.replace("ITEM: ATOMS", "ITEM:ATOMS"),
+        text.replace("\n0\n", "\nzero\n"),
+        text.replace(" 0.40000000000000002 ", " 0.4 0.5 "),
+        text[:middle] + "\nstray\n" + text[middle:],
+    ):
+        path.write_text(wrong)
+        with pytest.raises(ValueError, match=r"is damaged|unknown lines|tilted"):
+            Packing(path)
+    path.write_text(text.replace(" 0.40000000000000002 ", " 0.4x "))
+    with pytest.raises(ValueError, match=r"is damaged in frame 0 \(step 0\)"):
+        Packing(path)
+    path.write_text(text[:middle] + text[middle:].replace(" 0.40000000000000002 ", " 0.4x "))
+    with pytest.raises(ValueError, match=r"is damaged in frame 1 \(step 1\)"):
+        Packing(path).frame(1)
+    path.write_bytes(text.encode()[:200] + bytes(range(256)))
+    with pytest.raises(ValueError, match=r"is damaged, or no text dump"):
+        Packing(path)
+    packed = path.with_suffix(".gz")
+    packed.write_bytes(gzip.compress(text.encode())[:-60])
+    with pytest.raises(ValueError, match=r"is damaged, or no text dump"):
+        Packing(packed)
 
 
 def test_units_line_is_an_error_with_the_remedy(write_dump):

@@ -130,7 +130,7 @@ static Scene periodic_row(bool newton)
 TEST(an_image_is_in_contact_as_its_owner)
 {
   Scene scene = periodic_row(true);
-  Step step(settings("law moreau tol 1e-7"));
+  Step step(settings("law moreau criterion paper tol 1e-7"));
   CHECK(scene.advance(step, instant).contacts == 2);
   // 1 and 2 run into 3: all three go on at the mean velocity.
   for (int i = 0; i < 3; ++i) CHECK_NEAR(scene.v[3 * i], -2.0 / 3, 1e-6);
@@ -257,7 +257,8 @@ TEST(watched_pairs_join_when_the_solution_drives_them_together)
     scene.add({0, 0, 0}, 1, 10, {1, 0, 0});
     scene.add({2.01, 0, 0}, 1, 1);
     if (!wall) scene.add({4.05, 0, 0}, 1, 1e6);
-    Step step(settings(wall ? "law gap tol 1e-7 wall plane 3.05 0 0 -1 0 0" : "law gap tol 1e-7"));
+    const std::string words = "law gap criterion paper tol 1e-7";
+    Step step(settings(wall ? words + " wall plane 3.05 0 0 -1 0 0" : words));
     CHECK(scene.advance(step, 0.1).contacts == 2);
     CHECK(find_contact(step.state(), 1, wall ? -1 : 2) != nullptr);
     CHECK(step.report().largest_overlap < 1e-7);
@@ -287,7 +288,7 @@ TEST(watched_pairs_within_reach_join_when_one_of_them_is_stopped)
     Scene scene;
     scene.add({0, 0, 1.1}, 1, 1, {0, 0, -5});
     scene.add({0, 0, 3.45}, 1, 1, {0, 0, -5});
-    Step step(settings(std::string("law gap tol 1e-9 wall plane 0 0 0 0 0 1 solver ") + solver));
+    Step step(settings(std::string("law gap criterion paper tol 1e-9 wall plane 0 0 0 0 0 1 solver ") + solver));
     CHECK(scene.advance(step, 0.1).contacts == 2);
     CHECK_NEAR(scene.v[2], -1, 1e-7);     // 0.1 above the floor, in 0.1 s
     CHECK_NEAR(scene.v[5], -4.5, 1e-7);   // 0.35 above the other, which moves by 0.1
@@ -307,7 +308,8 @@ TEST(rounds_with_foreseen_contacts_give_the_velocities_of_all_contacts)
       Random random(5);
       Scene scene = random_scene(random, 60, 1, 0.1, 1);
       for (std::size_t i = 2; i < scene.v.size(); i += 3) scene.v[i] -= 20;
-      Step step(settings("law gap tol 1e-10 maxiter 100000 " + std::string(words) + "solver " + solvers[k] +
+      Step step(settings("law gap criterion paper tol 1e-10 maxiter 100000 " + std::string(words) + "solver " +
+                         solvers[k] +
                          box_walls(1, 1)));
       CHECK(scene.advance(step, 5e-3).converged);
       v[k] = scene.v;

@@ -117,7 +117,8 @@ TEST(a_step_makes_no_energy_where_newtons_law_does)
 {
   for (const int dimension : {2, 3}) {
     const double k = response_of(dimension);
-    nscd::Step step(settings("law moreau friction 0.5 restitution 1 tol 1e-10 maxiter 2000"), {}, dimension);
+    nscd::Step step(settings("law moreau friction 0.5 restitution 1 criterion paper tol 1e-10 maxiter 2000"), {},
+                    dimension);
     Scene scene = nip();
     const double before = energy_with_spins(scene, k);
     scene.advance(step, 1e-9);
@@ -134,7 +135,7 @@ TEST(a_step_makes_no_energy_where_newtons_law_does)
 TEST(a_step_leaves_impacts_alone_that_make_no_energy)
 {
   for (const char *keywords : {"restitution 1", "restitution 0.5 e_t 0.5", "restitution 0 e_t 0.5"}) {
-    nscd::Step step(settings(std::string("law moreau friction 0.5 tol 1e-10 ") + keywords));
+    nscd::Step step(settings(std::string("law moreau friction 0.5 criterion paper tol 1e-10 ") + keywords));
     Scene scene;
     scene.add({0, 0, 0}, 1, 1, {1, 0.5, 0});
     scene.add({1.99, 0, 0}, 1, 2, {-1, 0, 0.2});
@@ -188,7 +189,7 @@ static std::string words_for(const char *law, double mu, double e, double e_t)
 {
   const std::string friction = mu == nscd::stick ? "stick" : "friction " + std::to_string(mu);
   return std::string("law ") + law + " " + friction + " restitution " + std::to_string(e) + " e_t " +
-      std::to_string(e_t) + " tol 1e-9 maxiter 2000 unconverged ignore";
+      std::to_string(e_t) + " criterion paper tol 1e-9 maxiter 2000 unconverged ignore";
 }
 
 struct Tally {
@@ -268,8 +269,8 @@ TEST(steps_that_are_not_solved_make_no_energy)
     for (const char *law : {" law moreau", " law gap"}) {
       if (solver.name == "interior_point") continue;  // gives back its start after so few iterations: grains fall out
       for (const char *words : {" friction 3", " stick", " friction 10 restitution 1", " friction 3 e_t 1"})
-        given_up += check_bed("maxiter 5 tol 1e-9 unconverged ignore solver " + std::string(solver.name) + law + words,
-                              50, false);
+        given_up += check_bed("maxiter 5 criterion paper tol 1e-9 unconverged ignore solver " +
+                              std::string(solver.name) + law + words, 50, false);
     }
   CHECK(given_up > 200);
 }

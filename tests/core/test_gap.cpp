@@ -101,7 +101,7 @@ TEST(an_overlap_is_given_back_slowly)
     Scene scene;
     scene.add({0, 0, 1 - overlap}, 1, 2);
     scene.accelerate({0, 0, -g});
-    Step step(settings("law gap recovery 0.2 tol 1e-7" + floor_wall));
+    Step step(settings("law gap recovery 0.2 criterion paper tol 1e-7" + floor_wall));
     scene.advance(step, dt);
     const double speed = std::min(0.2 * overlap / dt, 0.1 * g * dt + 1e-7);
     CHECK_NEAR(scene.v[2], speed, 1e-14);
@@ -171,7 +171,7 @@ TEST(contact_rows_show_the_contacts_at_the_end_of_the_step)
   scene.add({0, 0, 1}, 1, 2);
   scene.add({0, 0, 2.5}, 0.5, 1);
   scene.accelerate({0, 0, -10});
-  Step step(settings("law gap tol 1e-12" + floor_wall));
+  Step step(settings("law gap criterion paper tol 1e-12" + floor_wall));
   scene.advance(step, 0.01);
   double rows[2][10];
   CHECK(step.report().contacts == 2);

@@ -63,23 +63,23 @@ static void check_ranks(const std::string &words, double tolerance)
 TEST(any_number_of_ranks_gives_the_velocities_of_one)
 {
   for (const char *solver : {"pdas", "apgs", "auto"})
-    check_ranks(std::string("tol 1e-10 solver ") + solver, 1e-6);
+    check_ranks(std::string("criterion paper tol 1e-10 solver ") + solver, 1e-6);
 }
 
 TEST(any_number_of_ranks_gives_the_velocities_of_one_under_law_moreau)
 {
-  check_ranks("tol 1e-10 law moreau restitution 0.5 solver apgs", 1e-6);
+  check_ranks("criterion paper tol 1e-10 law moreau restitution 0.5 solver apgs", 1e-6);
 }
 
 TEST(any_number_of_ranks_gives_the_velocities_of_one_with_a_little_friction)
 {
-  check_ranks("tol 1e-9 friction 0.01 solver apgs", 1e-5);
+  check_ranks("criterion paper tol 1e-9 friction 0.01 solver apgs", 1e-5);
 }
 
 TEST(a_factorising_solver_is_the_inner_one_of_each_rank)
 {
-  const std::vector<double> one = velocities("tol 1e-8 solver active_set", 1);
-  const std::vector<double> two = velocities("tol 1e-8 solver active_set", 2);
+  const std::vector<double> one = velocities("criterion paper tol 1e-8 solver active_set", 1);
+  const std::vector<double> two = velocities("criterion paper tol 1e-8 solver active_set", 2);
   for (std::size_t k = 0; k < one.size(); ++k) CHECK_NEAR(two[k], one[k], 1e-4);
 }
 

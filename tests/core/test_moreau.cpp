@@ -93,7 +93,8 @@ TEST(a_column_carries_its_weight)
     Scene scene;
     for (int i = 0; i < 3; ++i) scene.add({0, 0, 1 + 2.0 * i}, 1, 2);
     scene.accelerate({0, 0, -10});
-    Step step(settings("law moreau tol 1e-10 solver " + std::string(solver.name) + " wall plane 0 0 0 0 0 1"));
+    const std::string words = "law moreau criterion paper tol 1e-10 wall plane 0 0 0 0 0 1 solver ";
+    Step step(settings(words + std::string(solver.name)));
     scene.advance(step, 0.01);
     CHECK(step.report().converged);
     CHECK_NEAR(find_contact(step.state(), 0, -1)->impulse, 0.6, 1e-8);
@@ -108,8 +109,8 @@ TEST(a_warm_start_saves_the_iterations_of_a_resting_column)
   for (const bool warm : {false, true}) {
     Scene scene;
     for (int i = 0; i < 10; ++i) scene.add({0, 0, 0.999 + 1.999 * i}, 1, 2);
-    Step step(settings(std::string("solver pdas law moreau tol 1e-7 wall plane 0 0 0 0 0 1 warmstart ") +
-                       (warm ? "yes" : "no")));
+    const std::string words = "solver pdas law moreau criterion paper tol 1e-7 wall plane 0 0 0 0 0 1 warmstart ";
+    Step step(settings(words + (warm ? "yes" : "no")));
     for (int k = 0; k < 3; ++k) {
       scene.accelerate({0, 0, -10});
       scene.advance(step, 0.01);

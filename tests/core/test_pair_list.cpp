@@ -87,7 +87,8 @@ TEST(a_list_that_names_atoms_in_any_order_is_read_the_same)
     for (int i = 0; i < 4; ++i) scene->add({1.9 * i, 0, 0}, 1, 1 + i, {i % 2 ? -1.0 : 1.0, 0, 0});
   plain.list_pairs({{1, 2, 3}, {2, 3}, {3}, {}});
   shuffled.list_pairs({{}, {0}, {1, 0}, {0, 2, 1}});
-  Step a(settings("law moreau tol 1e-13 maxiter 100000")), b(settings("law moreau tol 1e-13 maxiter 100000"));
+  const std::string words = "law moreau criterion paper tol 1e-13 maxiter 100000";
+  Step a(settings(words)), b(settings(words));
   CHECK(plain.advance(a, 1e-6).contacts == 3);
   CHECK(shuffled.advance(b, 1e-6).contacts == 3);
   for (std::size_t d = 0; d < plain.v.size(); ++d) CHECK_NEAR(shuffled.v[d], plain.v[d], 1e-11);

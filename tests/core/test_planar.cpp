@@ -90,7 +90,8 @@ static void check_rolling(const char *law, int dimension, const char *inertia, d
 {
   Scene scene;
   scene.add({0, 0.5, 0}, 0.5, 2, {3, 0, 0});
-  Step step(settings(std::string("friction 0.3 tol 1e-12 law ") + law + inertia + ground), {}, dimension);
+  const std::string words = "friction 0.3 criterion paper tol 1e-12 law ";
+  Step step(settings(words + law + inertia + ground), {}, dimension);
   for (int k = 0; k < 100; ++k) {
     scene.accelerate({0, -10, 0});
     scene.advance(step, 0.01);
@@ -198,7 +199,7 @@ TEST(obstacles_drive_grains_by_spin_and_by_velocity)
         scene.add_obstacle({0, 0, 0}, 1000);
         if (spinning) scene.omega[5] = -2e-3;
         else scene.v[3] = 2;
-        Step step(settings("friction 0.4 tol 1e-11 law " + law), {}, dimension);
+        Step step(settings("friction 0.4 criterion paper tol 1e-11 law " + law), {}, dimension);
         for (int k = 0; k < 60; ++k) {
           scene.accelerate({0, -10, 0});
           scene.advance(step, 1e-3);
@@ -218,7 +219,7 @@ TEST(a_turning_obstacle_turns_a_caged_grain)
   scene.add_obstacle({0, 0, 0}, 2);
   scene.omega[5] = 3;
   const std::string cage = " wall plane 1 0 0 -1 0 0 friction 0 wall plane -1 0 0 1 0 0 friction 0";
-  Step step(settings("law moreau friction 0.5 tol 1e-12" + cage), {}, 2);
+  Step step(settings("law moreau friction 0.5 criterion paper tol 1e-12" + cage), {}, 2);
   for (int k = 0; k < 300; ++k) {
     scene.accelerate({0, -10, 0});
     scene.advance(step, 1e-2);

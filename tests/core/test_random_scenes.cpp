@@ -25,7 +25,7 @@ static std::string random_keywords(Random &random, const nscd::SolverEntry &solv
   words += random() < 0.5 ? " warmstart yes" : " warmstart no";
   if (random() < 0.3 && !solver.parameter.empty())
     words += " " + std::string(solver.parameter) + " " + std::to_string(solver.default_parameter * random(0.3, 2));
-  return words + " tol 1e-7 unconverged ignore maxiter 200 solver " + std::string(solver.name);
+  return words + " criterion paper tol 1e-7 unconverged ignore maxiter 200 solver " + std::string(solver.name);
 }
 
 static std::string random_friction(Random &random)
@@ -151,7 +151,8 @@ TEST(periodic_random_scenes_do_not_depend_on_newton)
     Random one(99), two(99);
     Scene on = random_scene(one, 40, 1, 0.12, 2), off = random_scene(two, 40, 1, 0.12, 2);
     off.newton = false;
-    Step a(settings(law + walls + " tol 1e-11 maxiter 20000")), b(settings(law + walls + " tol 1e-11 maxiter 20000"));
+    const std::string words = law + walls + " criterion paper tol 1e-11 maxiter 20000";
+    Step a(settings(words)), b(settings(words));
     for (int k = 0; k < 30; ++k) {
       for (Scene *scene : {&on, &off}) {
         scene->accelerate({0, 0, -10});

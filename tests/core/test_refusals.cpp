@@ -103,7 +103,8 @@ TEST(contacts_that_could_be_missed_are_refused)
 TEST(a_step_that_is_not_solved_is_an_error_if_asked)
 {
   const auto crowd = [](Scene &s) { s.x[3] = 1.99; s.v[3] = -1; };
-  refuses("solver sal tol 1e-7 maxiter 1 unconverged error", crowd, "step not solved: criterion (42) is ");
+  refuses("solver sal criterion paper tol 1e-7 maxiter 1 unconverged error", crowd,
+          "step not solved: criterion (42) is ");
   refuses("solver sal maxiter 1 unconverged error friction 0.5", crowd, "step not solved: criterion natural is ");
   Scene scene = three_grains();
   crowd(scene);

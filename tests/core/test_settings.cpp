@@ -22,18 +22,10 @@ TEST(no_keywords_leave_the_defaults)
 {
   const nscd::Settings s = checked("");
   CHECK(s.solver == "auto" && s.law == "gap" && s.restitution == 0 && s.maxiter == 1000);
-  CHECK(s.overlap == 5e-4 && !checked("law moreau").overlap && !checked("tol 1e-3").overlap);
+  CHECK(s.overlap == 5e-4 && !checked("law moreau").overlap && !checked("criterion paper").overlap);
   CHECK(s.tol == 1e-3 && s.criterion == nscd::Stop::natural && s.threads == 1);
   CHECK(s.warmstart && s.unconverged == nscd::Unconverged::warn && s.walls.empty());
   CHECK(!s.rho && !s.gamma);
-}
-
-TEST(tol_alone_is_in_metres_per_second_as_in_the_paper)
-{
-  CHECK(checked("tol 1e-9").criterion == nscd::Stop::paper);
-  CHECK(checked("criterion paper").tol == 1e-7);
-  const nscd::Settings both = checked("tol 1e-6 criterion natural");
-  CHECK(both.tol == 1e-6 && both.criterion == nscd::Stop::natural);
 }
 
 TEST(the_settings_of_the_paper_are_one_keyword_away)
@@ -64,9 +56,42 @@ TEST(the_default_tolerance_follows_the_scene)
   CHECK(iterations[0] == iterations[1] && iterations[0] > 10);
 }
 
-TEST(a_later_keyword_overrides_an_earlier_one)
+TEST(a_keyword_is_given_once)
 {
-  CHECK(settings("tol 1e-3 tol 1e-5").tol == 1e-5);
+  CHECK_ERROR(settings("tol 1e-3 tol 1e-5"), "keyword tol is given twice");
+  CHECK_ERROR(settings("friction 0.3 stick"), "keyword stick is a friction, which is given twice");
+  CHECK_ERROR(settings("tol 1e-6 paper yes"), "keyword paper behind tol would override it: give paper first");
+  CHECK(settings("paper yes tol 1e-6").tol == 1e-6);
+  CHECK(settings("wall plane 0 0 0 0 0 1 wall plane 0 0 9 0 0 -1").walls.size() == 2);
+}
+
+TEST(what_a_wall_has_not_is_refused_behind_it)
+{
+  CHECK_ERROR(settings("wall plane 0 0 0 0 0 1 restitution 0.5"), "restitution right behind a wall");
+  CHECK_ERROR(settings("wall plane 0 0 0 0 0 1 friction 0.3 restitution 0.5"), "Give it before the walls");
+  CHECK_ERROR(settings("friction 0.5 wall plane 0 0 0 0 0 1 e_t 0.5"), "e_t right behind a wall");
+  CHECK_ERROR(settings("wall plane 0 0 0 0 0 1 friction 0.7 friction 0.2"), "the wall has its friction already");
+  CHECK_ERROR(settings("wall plane 0 0 0 0 0 1 stick stick"), "the wall has its friction already");
+  CHECK(settings("restitution 0.5 wall plane 0 0 0 0 0 1").restitution == 0.5);
+}
+
+TEST(numbers_are_those_of_lammps)
+{
+  CHECK(settings("restitution +0.5").restitution == 0.5 && settings("maxiter +7").maxiter == 7);
+  CHECK(settings("wall plane +0 -0 +.5 0 0 +1e0").walls[0].point[2] == 0.5);
+  for (const char *wrong : {"+", "++0.5", "+-0.5", "-+0.5", "+ 0.5"})
+    CHECK_ERROR(settings("restitution " + std::string(wrong)), "is not a number");
+}
+
+TEST(a_tol_keeps_its_unit)
+{
+  const nscd::Settings plain = checked(""), given = checked("tol 1e-3"), said = checked("criterion natural tol 1e-3");
+  for (const nscd::Settings &s : {plain, given, said})
+    CHECK(s.criterion == nscd::Stop::natural && s.tol == 1e-3 && s.overlap == 5e-4);
+  const nscd::Settings paper = checked("criterion paper tol 1e-6");
+  CHECK(paper.criterion == nscd::Stop::paper && paper.tol == 1e-6 && !paper.overlap);
+  CHECK(checked("criterion paper").tol == 1e-7 && checked("paper yes tol 1e-6").criterion == nscd::Stop::paper);
+  CHECK_ERROR(checked("tol 0.2"), "criterion paper");  // as it is in no share of velocities
 }
 
 TEST(yes_and_no_are_spelled_as_in_lammps)
@@ -140,8 +165,8 @@ TEST(a_step_refuses_bad_settings_at_once)
 TEST(friction_keywords_set_what_they_name)
 {
   const nscd::Settings s = settings(
-      "friction 0.3 wall plane 0 0 0 0 0 1 friction 0.7 wall plane 0 0 9 0 0 -1 friction stick "
-      "wall plane 0 0 0 1 0 0 stick wall plane 9 0 0 -1 0 0 e_t 0.25 inertia sphere wall plane 0 0 0 0 1 0 friction 0");
+      "friction 0.3 e_t 0.25 wall plane 0 0 0 0 0 1 friction 0.7 wall plane 0 0 9 0 0 -1 friction stick "
+      "wall plane 0 0 0 1 0 0 stick wall plane 9 0 0 -1 0 0 inertia sphere wall plane 0 0 0 0 1 0 friction 0");
   CHECK(s.friction == 0.3 && s.e_t == 0.25 && s.inertia == nscd::Inertia::sphere && s.frictional());
   const double expected[] = {0.7, nscd::stick, nscd::stick, 0.3, 0};
   CHECK(s.walls.size() == 5);
@@ -159,7 +184,7 @@ TEST(friction_belongs_to_the_wall_it_stands_behind)
   CHECK(walls_own.friction == 0 && walls_own.frictional() && walls_own.wall_friction(0) == 0.7);
   const nscd::Settings pairs = checked("wall plane 0 0 0 0 0 1 tol 1e-9 friction 0.7");
   CHECK(pairs.friction == 0.7 && !pairs.walls[0].friction && pairs.wall_friction(0) == 0.7);
-  const nscd::Settings both = checked("wall plane 0 0 0 0 0 1 friction 0.7 friction 0.2");
+  const nscd::Settings both = checked("friction 0.2 wall plane 0 0 0 0 0 1 friction 0.7");
   CHECK(both.friction == 0.2 && both.wall_friction(0) == 0.7);
   const nscd::Settings smooth = checked("friction 0.5 wall plane 0 0 0 0 0 1 friction 0");
   CHECK(smooth.wall_friction(0) == 0 && smooth.frictional());

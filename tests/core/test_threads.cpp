@@ -43,7 +43,7 @@ static void list_neighbors(Scene &scene, int side)
 }
 
 static const std::string floor_and_settings =
-    " wall plane 0 0 0 0 0 1 tol 1e-9 maxiter 20000 unconverged error solver ";
+    " wall plane 0 0 0 0 0 1 criterion paper tol 1e-9 maxiter 20000 unconverged error solver ";
 
 static Scene solved(Scene scene, int side, const std::string &words, int threads, int steps = 1)
 {

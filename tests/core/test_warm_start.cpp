@@ -186,7 +186,8 @@ static void check_rigid_turn(const char *law, int dimension, const Vec4 &axis, c
     stop_both(s, p);
     given = in_space_on_first(s, p);
   };
-  nscd::Step step(settings(std::string("friction 0.5 unconverged ignore tol 1e-9 law ") + law), solver, dimension);
+  const std::string words = "friction 0.5 unconverged ignore criterion paper tol 1e-9 law ";
+  nscd::Step step(settings(words + law), solver, dimension);
   Scene scene;
   scene.add({}, 1, 1);
   scene.add({}, 1, 2);
@@ -221,9 +222,8 @@ TEST(a_warm_start_saves_the_iterations_of_a_heap_with_friction)
         Scene scene;
         for (int i = 0; i < 4; ++i) scene.add({1.999 * i, 0.999, 0}, 1, 1);
         for (int i = 0; i < 3; ++i) scene.add({1.999 * i + 1, 2.729, 0}, 1, 1);
-        nscd::Step step(settings(std::string("solver pdas tol 1e-7 friction 0.6 wall plane 0 0 0 0 1 0 law ") + law +
-                                 " warmstart " +
-                                 (warm ? "yes" : "no")), {}, dimension);
+        const std::string words = "solver pdas criterion paper tol 1e-7 friction 0.6 wall plane 0 0 0 0 1 0 law ";
+        nscd::Step step(settings(words + law + " warmstart " + (warm ? "yes" : "no")), {}, dimension);
         for (int k = 0; k < 5; ++k) {
           scene.accelerate({0, -10, 0});
           scene.advance(step, 1e-3);
