@@ -9,8 +9,8 @@ from typing import Any
 from nscd_lmp._core import NscdError
 from nscd_lmp.ranks import Ranks
 
-# Styles that advance positions, to be named before the run; whatever else does is found by the step, which looks at where
-# grains are.
+# Styles that advance positions, to be named before the run; whatever else does is found by the step, which looks at
+# where grains are.
 INTEGRATORS = re.compile(r"^(nve|nvt|nph|npt|nvk|rigid|move|brownian|bd|poems|nscd|npu|qbmsst|gjf|wall/move)")
 
 # Styles that move grains without integrating them; those that change the box are found by that.
@@ -84,7 +84,9 @@ class Inspection:
         """Raise if atoms have a shape that is not a sphere's."""
         found = re.search(r"Atom style +=(.*)", self.info("system"))
         for shape in set(found[1].split() if found else ()) & set(SHAPES):
-            raise NscdError(f"atom_style {shape} is not of spheres, and grains would be taken for some: use atom_style sphere")
+            raise NscdError(
+                f"atom_style {shape} is not of spheres, and grains would be taken for some: use atom_style sphere"
+            )
 
     def listed_pairs(self) -> ListedPairs:
         """Return which neighbor list gives the contact pairs, and how far it reaches."""
@@ -150,7 +152,7 @@ class Inspection:
         return max(cutoffs.values()) * (1 - 1e-7 * multi)
 
     def _communication_cutoffs(self) -> dict[str, float]:
-        """Return the communication cutoff, or those of the collections of ``comm_modify mode multi`` by their numbers."""
+        """Return the communication cutoff, or those of the collections of ``comm_modify mode multi`` by number."""
         found = re.findall(r"Communication cutoff(?: for collection (\d+))? = (\S+)", self.info("communication"))
         if not found:
             raise NscdError("LAMMPS did not tell its communication cutoff: use comm_modify mode single")
@@ -175,8 +177,8 @@ class Inspection:
         factors = re.search(r"Special bond factors lj = +(\S+)", self.info("system")) if bonding else None
         if factors and float(factors[1]) == 0:
             raise NscdError(
-                f"fix {bonding[0].id} (style {bonding[0].style}) makes bonds, and special_bonds leaves bonded pairs out of"
-                " the neighbor list, so that they would pass through each other: use `special_bonds lj 1 1 1`"
+                f"fix {bonding[0].id} (style {bonding[0].style}) makes bonds, and special_bonds leaves bonded pairs out"
+                " of the neighbor list, so that they would pass through each other: use `special_bonds lj 1 1 1`"
             )
 
     def refuse_integrators(self, fixes: list[FixInfo], own_id: str, group: str) -> None:

@@ -14,8 +14,8 @@ namespace nscd {
 // Steps since the run began, at the first call: fix external calls in the setup too, fix python/invoke does not.
 constexpr int in_setup = 0, in_first_step = 1;
 
-ExternalFix::ExternalFix(const Library &library, const std::string &id, int group_bit, const Settings &settings, Step::CustomSolver custom, nanobind::object ranks,
-                         nanobind::object find_homes) :
+ExternalFix::ExternalFix(const Library &library, const std::string &id, int group_bit, const Settings &settings,
+                         Step::CustomSolver custom, nanobind::object ranks, nanobind::object find_homes) :
     library_(library),
     id_(id), group_bit_(group_bit),
     ranks_(ranks.is_none() ? nullptr : std::make_unique<PythonRanks>(ranks)), find_homes_(std::move(find_homes)),
@@ -74,8 +74,8 @@ void ExternalFix::advance(double elapsed)
 void ExternalFix::require_next_step(double elapsed)
 {
   if (elapsed > 1 && timestep() != last_step_ + 1)
-    fail("timestep ", timestep(), " follows ", last_step_, ": `rerun` reads frames, and each would be taken for a step: ",
-         "detach before it");
+    fail("timestep ", timestep(), " follows ", last_step_, ": `rerun` reads frames, and each would be taken for a ",
+         "step: detach before it");
 }
 
 // Scripts may move grains between runs and between the pieces of `run every`, and what moves the box moves grains.
@@ -231,7 +231,8 @@ PairList ExternalFix::pairs(const Grains &g)
   if (at_its_places || list_reach_ == 0)
     list_reach_ = reach_.measure(g, library_.per_atom<int>("type"), setting("ntypes"), ranks_.get());
   p.reach = list_reach_;
-  if (at_its_places) leaves_out_pairs_ = reach_.leaves_out_pairs(g, p, ranks_.get());
+  if (at_its_places)
+    leaves_out_pairs_ = reach_.leaves_out_pairs(g, p, timestep(), library_.get_natoms(library_.handle), ranks_.get());
   p.excludes = leaves_out_pairs_;
   new_list_ = false;
   return p;

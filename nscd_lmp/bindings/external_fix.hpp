@@ -26,10 +26,10 @@ struct StatsRow {
 
 class ExternalFix {
  public:
-  // `ranks`: as PythonRanks takes it, and `find_homes` a function of images' places and tags and of owned tags (nscd_lmp/ghost_homes.py); None on one
-  // rank.
-  ExternalFix(const Library &library, const std::string &id, int group_bit, const Settings &settings, Step::CustomSolver custom, nanobind::object ranks,
-              nanobind::object find_homes);
+  // `ranks`: as PythonRanks takes it, and `find_homes` a function of images' places and tags and of owned tags
+  // (nscd_lmp/ghost_homes.py); None on one rank.
+  ExternalFix(const Library &library, const std::string &id, int group_bit, const Settings &settings,
+              Step::CustomSolver custom, nanobind::object ranks, nanobind::object find_homes);
 
   // Called by LAMMPS with the step's arrays: the signature of FixExternalFnPtr.
   static void callback(void *self, std::int64_t timestep, int owned, int *tags, double **x, double **f_external);

@@ -4,7 +4,6 @@
 #include "../core/list_audit.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace nscd {
@@ -28,18 +27,20 @@ double ListReach::measure(const Grains &g, const int *type, int types, Ranks *ra
   return reach;
 }
 
-bool ListReach::leaves_out_pairs(const Grains &grains, const PairList &pairs, Ranks *ranks)
+bool ListReach::leaves_out_pairs(const Grains &grains, const PairList &pairs, std::int64_t timestep, double atoms,
+                                 Ranks *ranks)
 {
-  ++lists_;
-  const bool due = !listed_.cutoffs_known || (std::has_single_bit(lists_) && std::countr_zero(lists_) % 2 == 0);
-  if (lists_ == 1) leaves_out_ = false;
-  if (!due) return leaves_out_;
+  if (next_audit_ == 0) leaves_out_ = false;
+  if (timestep < next_audit_ && listed_.cutoffs_known) return leaves_out_;
+  // An audit costs what a few steps of a cloud that falls cost: few grains are looked at with every list.
+  constexpr double longest_pause = 50, atoms_a_step = 10;
+  next_audit_ = timestep + std::int64_t(std::min(longest_pause, atoms / atoms_a_step));
   double unlisted = count_unlisted(grains, pairs, pairs.reach);
   if (ranks) ranks->sum({&unlisted, 1});
   if (unlisted > 0 && !listed_.cutoffs_known)
     fail("grains are less than ", pairs.reach, " apart, and the neighbor list of pair_style ", listed_.pair_style,
-         " does not have them, though its largest cutoff and the skin are ", listed_.cutoff, ": give all pairs of types ",
-         "this cutoff, by pair_style zero, or beside other styles by `pair_style hybrid/overlay zero CUTOFF ...` with ",
+         " does not have them, though its largest cutoff and the skin are ", listed_.cutoff, ": give all pairs of ",
+         "types this cutoff, by pair_style zero, or beside other styles by `pair_style hybrid/overlay zero CUTOFF ...` with ",
          "`pair_coeff * * zero`, and exclude none by neigh_modify; fix nscd can do without");
   leaves_out_ = leaves_out_ || unlisted > 0;
   return leaves_out_;

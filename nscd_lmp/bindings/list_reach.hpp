@@ -25,15 +25,14 @@ class ListReach {
   // Of a new list: the surface distance up to which it has all pairs of which one moves. `type`: (owned) from 1.
   double measure(const Grains &grains, const int *type, int types, Ranks *ranks) const;
 
-  // A run begins: where cutoffs are known its lists 1, 4, 16, 64, ... are audited.
-  void begin_run() { lists_ = 0; }
-  // Whether a new list holds all pairs up to `reach`. Raises Error if it does not, unless they are known to be left out
-  // on purpose.
-  bool leaves_out_pairs(const Grains &grains, const PairList &pairs, Ranks *ranks);
+  void begin_run() { next_audit_ = 0; }
+  // Whether lists of the run leave out pairs nearer than `reach`, seen at a new one; `atoms`: of all ranks. Raises
+  // Error if they do, unless the cutoffs are known, so that it is on purpose.
+  bool leaves_out_pairs(const Grains &grains, const PairList &pairs, std::int64_t timestep, double atoms, Ranks *ranks);
 
  private:
   ListedPairs listed_;
-  unsigned lists_ = 0;   // of the run
+  std::int64_t next_audit_ = 0;   // timestep; 0: the run begins
   bool leaves_out_ = false;
 };
 

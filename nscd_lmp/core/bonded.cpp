@@ -21,8 +21,8 @@ std::int32_t find_unlisted(const Bonded &bonded, const Grains &g)
 void require_listed(std::int32_t grain)
 {
   if (grain > 0)
-    fail("grain ", grain, " is bonded, and special_bonds leaves bonded pairs out of the neighbor list, so that they would "
-         "pass through each other: use `special_bonds lj 1 1 1`; pairs that are to overlap can be left out by "
+    fail("grain ", grain, " is bonded, and special_bonds leaves bonded pairs out of the neighbor list, so that they ",
+         "would pass through each other: use `special_bonds lj 1 1 1`; pairs that are to overlap can be left out by "
          "`neigh_modify exclude`");
 }
 

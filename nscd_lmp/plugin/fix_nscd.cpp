@@ -77,6 +77,7 @@ void FixNscd::find_list()
   const ContactList found = find_contact_list(lmp);
   list_ = found.list;
   list_limit_ = found.limit;
+  list_reach_ = 0;   // cutoffs may be others than in the last run
   if (!list_)
     error->all(FLERR,
                "Fix nscd {} needs the neighbor list of a pair style, and pair style {} has none: use pair_style zero "
@@ -103,8 +104,18 @@ void FixNscd::check_run()
   });
   held_ = checks_.held_groups();
   rows_every_step_ = checks_.rows_may_be_read();
-  const std::string excluded = checks_.exclusions();
-  if (comm->me == 0 && !excluded.empty()) error->warning(FLERR, "Fix nscd {}: {}", id, excluded);
+  excludes_ = false;
+  tell_of_exclusions();
+}
+
+// Again when atoms have come in.
+void FixNscd::tell_of_exclusions()
+{
+  if (excludes_) return;
+  atoms_told_of_ = atom->natoms;
+  const std::string excluded = checks_.exclusions(grains());
+  excludes_ = !excluded.empty();
+  if (comm->me == 0 && excludes_) error->warning(FLERR, "Fix nscd {}: {}", id, excluded);
 }
 
 void FixNscd::setup(int /*vflag*/)
@@ -154,16 +165,6 @@ void FixNscd::unpack_forward_comm(int count, int first, double *from)
   for (int k = 0; k < count; ++k) homes_[first + k] = int(from[k]);
 }
 
-// LAMMPS drops grains when it builds lists, and only then.
-void FixNscd::require_all_grains()
-{
-  double here = atom->nlocal;
-  ranks_.sum({&here, 1});
-  if (here != double(atom->natoms))
-    error->all(FLERR, "Fix nscd {}: {} of {} grains left the box: close it with wall planes or boundary s or m", id,
-               bigint(atom->natoms - bigint(here)), atom->natoms);
-}
-
 nscd::Grains FixNscd::grains()
 {
   nscd::Grains g;
@@ -206,19 +207,20 @@ nscd::PairList FixNscd::pairs()
   p.just_built = neighbor->ago == 0;
   if (p.just_built || list_reach_ == 0) measure_list_reach();
   p.reach = std::min(list_reach_, list_limit_);
-  p.excludes = neighbor->exclude;
+  p.excludes = excludes_;
   return p;
 }
 
 void FixNscd::final_integrate()
 {
   if (neighbor->ago == 0 || steps_ == 0) {
-    require_all_grains();
+    or_stop(error, id, [&] { checks_.require_all_grains(); });
     find_homes();
     or_stop(error, id, [&] {
       checks_.require_sole_integrator();
       checks_.require_bonds_listed(grains());
     });
+    if (atom->natoms != atoms_told_of_) tell_of_exclusions();
   }
   or_stop(error, id, [&] { step_->advance(grains(), pairs(), update->dt); });
   totals_.add(step_->report());
@@ -235,11 +237,8 @@ void FixNscd::post_run()
     if (comm->me == 0) error->warning(FLERR, "Fix nscd {}: {}", id, remark);
 }
 
-// Rows cannot be made when they are read: LAMMPS reads them as they lie. Between the pieces of `run every` scripts can.
-bool FixNscd::local_rows_wanted() const
-{
-  return rows_every_step_ || output->next == update->ntimestep || update->laststep == update->ntimestep;
-}
+// They cannot be made when they are read: LAMMPS reads them as they lie.
+bool FixNscd::local_rows_wanted() const { return rows_every_step_ || output->next == update->ntimestep; }
 
 void FixNscd::fill_local()
 {
@@ -257,7 +256,10 @@ double FixNscd::compute_scalar() { return step_->report().iterations; }
 
 double FixNscd::compute_vector(int n) { return nscd::report_column(step_->report(), n); }
 
-double FixNscd::compute_array(int /*row*/, int column) { return column < nscd::totals_columns ? totals_.column(column) : 0; }
+double FixNscd::compute_array(int /*row*/, int column)
+{
+  return column < nscd::totals_columns ? totals_.column(column) : 0;
+}
 
 // Called on all ranks ahead of the records; rank 0 writes their number of words, which nothing reads.
 void FixNscd::write_restart(FILE *file)

@@ -37,12 +37,12 @@ class FixNscd : public Fix {
 
  private:
   void check_run();
+  void tell_of_exclusions();
   void measure_list_reach();
   void find_list();
   nscd::Grains grains();
   nscd::PairList pairs();
   void find_homes();
-  void require_all_grains();
   void fill_local();
   bool local_rows_wanted() const;
 
@@ -61,6 +61,8 @@ class FixNscd : public Fix {
   nscd::Totals totals_;
   nscd::RestartRecords records_;
   int largest_record_ = 0;              // of all ranks
+  bool excludes_ = false;               // neigh_modify exclude leaves out pairs that could be contacts
+  bigint atoms_told_of_ = 0;
   bigint steps_ = 0;                    // of the run
 };
 

@@ -40,12 +40,23 @@ void SceneChecks::require_spheres(bool frictional) const
                                                  {atom->tri_flag, "tri"},
                                                  {atom->ellipsoid_flag, "ellipsoid"}};
   for (const auto &[there, name] : shapes)
-    if (there) nscd::fail("atom_style ", name, " is not of spheres, and grains would be taken for some: use atom_style sphere");
+    if (there)
+      nscd::fail("atom_style ", name, " is not of spheres, and grains would be taken for some: use atom_style sphere");
   if (!atom->radius_flag) nscd::fail("atoms have no radius: use atom_style sphere");
   if (frictional && !atom->omega_flag)
-    nscd::fail("friction turns grains, but atoms have no angular velocity: use atom_style sphere, or leave friction out");
+    nscd::fail("friction turns grains, but atoms have no angular velocity: use atom_style sphere, or leave friction ",
+               "out");
   if (!atom->tag_enable) nscd::fail("atoms have no IDs: use atom_modify id yes");
   if (utils::strmatch(update->integrate_style, "^respa")) nscd::fail("it needs run_style verlet");
+}
+
+void SceneChecks::require_all_grains()
+{
+  double here = atom->nlocal;
+  ranks_.sum({&here, 1});
+  if (here != double(atom->natoms))
+    nscd::fail(atom->natoms - bigint(here), " of ", atom->natoms,
+               " grains left the box: close it with wall planes or boundary s or m");
 }
 
 void SceneChecks::require_sole_integrator()
@@ -109,22 +120,45 @@ void SceneChecks::require_future_bonds_listed() const
   if (atom->molecular == Atom::ATOMIC || lists_pairs(1)) return;
   for (Fix *other : modify->get_fix_list())
     if (begins_with_one_of(other->style, {"bond/create", "bond/react"}))
-      nscd::fail("fix ", other->id, " (style ", other->style, ") makes bonds, and special_bonds leaves bonded pairs out of ",
-                 "the neighbor list, so that they would pass through each other: use `special_bonds lj 1 1 1`");
+      nscd::fail("fix ", other->id, " (style ", other->style, ") makes bonds, and special_bonds leaves bonded pairs out ",
+                 "of the neighbor list, so that they would pass through each other: use `special_bonds lj 1 1 1`");
 }
 
-std::string SceneChecks::exclusions() const
+// Whether pairs of the first kind with the second can be contacts: both are there, and one of them moves.
+template <class First, class Second>
+bool SceneChecks::can_meet(const nscd::Grains &grains, First first, Second second)
+{
+  double there[4] = {};   // of the first, of the second, and those of them that move
+  for (int i = 0; i < grains.owned; ++i) {
+    const bool moves = grains.moves(i);
+    if (first(i)) there[0] = 1, there[2] = std::max<double>(there[2], moves);
+    if (second(i)) there[1] = 1, there[3] = std::max<double>(there[3], moves);
+  }
+  ranks_.max(there);
+  return (there[0] > 0 && there[3] > 0) || (there[1] > 0 && there[2] > 0);
+}
+
+std::string SceneChecks::exclusions(const nscd::Grains &grains)
 {
   if (!neighbor->exclude) return "";
   std::string text;
   const auto add = [&text](const std::string &pairs) { text += (text.empty() ? "" : ", ") + pairs; };
+  const auto of_type = [this](int type) { return [this, type](int i) { return atom->type[i] == type; }; };
+  const auto of_group = [this](int number) {
+    return [this, bit = group->bitmask[number]](int i) { return (atom->mask[i] & bit) != 0; };
+  };
   for (int k = 0; k < neighbor->nex_type; ++k)
-    add(fmt::format("of types {} and {}", neighbor->ex1_type[k], neighbor->ex2_type[k]));
+    if (can_meet(grains, of_type(neighbor->ex1_type[k]), of_type(neighbor->ex2_type[k])))
+      add(fmt::format("of types {} and {}", neighbor->ex1_type[k], neighbor->ex2_type[k]));
   for (int k = 0; k < neighbor->nex_group; ++k)
-    add(fmt::format("of groups {} and {}", group->names[neighbor->ex1_group[k]], group->names[neighbor->ex2_group[k]]));
+    if (can_meet(grains, of_group(neighbor->ex1_group[k]), of_group(neighbor->ex2_group[k])))
+      add(fmt::format("of groups {} and {}", group->names[neighbor->ex1_group[k]],
+                      group->names[neighbor->ex2_group[k]]));
   for (int k = 0; k < neighbor->nex_mol; ++k)
-    add(fmt::format("of {} in group {}", neighbor->ex_mol_intra[k] ? "one molecule" : "two molecules",
-                    group->names[neighbor->ex_mol_group[k]]));
+    if (can_meet(grains, of_group(neighbor->ex_mol_group[k]), of_group(neighbor->ex_mol_group[k])))
+      add(fmt::format("of {} in group {}", neighbor->ex_mol_intra[k] ? "one molecule" : "two molecules",
+                      group->names[neighbor->ex_mol_group[k]]));
+  if (text.empty()) return "";
   return "pairs " + text + " are never contacts: neigh_modify exclude leaves them out of the neighbor list";
 }
 
@@ -136,8 +170,8 @@ int SceneChecks::held_groups() const
   return bits;
 }
 
-// LAMMPS does not tell what a compute reads, and evaluates computes when fixes and variables ask for them. Its own three,
-// thermo_temp, thermo_press and thermo_pe, read no fix.
+// LAMMPS does not tell what a compute reads, and evaluates computes when fixes and variables ask for them. Its own
+// three, thermo_temp, thermo_press and thermo_pe, read no fix.
 bool SceneChecks::rows_may_be_read() const
 {
   for (Fix *other : modify->get_fix_list())
