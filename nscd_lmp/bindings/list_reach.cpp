@@ -40,8 +40,8 @@ bool ListReach::leaves_out_pairs(const Grains &grains, const PairList &pairs, st
   if (unlisted > 0 && !listed_.cutoffs_known)
     fail("grains are less than ", pairs.reach, " apart, and the neighbor list of pair_style ", listed_.pair_style,
          " does not have them, though its largest cutoff and the skin are ", listed_.cutoff, ": give all pairs of ",
-         "types this cutoff, by pair_style zero, or beside other styles by `pair_style hybrid/overlay zero CUTOFF ...` with ",
-         "`pair_coeff * * zero`, and exclude none by neigh_modify; fix nscd can do without");
+         "types this cutoff, by pair_style zero, or beside other styles by `pair_style hybrid/overlay zero CUTOFF ",
+         "...` with `pair_coeff * * zero`, and exclude none by neigh_modify; fix nscd can do without");
   leaves_out_ = leaves_out_ || unlisted > 0;
   return leaves_out_;
 }

@@ -69,8 +69,8 @@ std::vector<std::string> Remarks::take(const Settings &s, bool looks_ahead)
     said.push_back(sentence("grains move by up to ", rounded(move_ratio_), " of the smallest radius in a step, and ",
                             "law ", s.law, " does not see them pass each other: use law gap or a smaller timestep"));
   if (torque_)
-    said.push_back("torques act on grains without friction, which have no spins: give the fix a friction (0.0001 will do "
-                   "where its own contacts are to have none), or leave out what makes them");
+    said.push_back("torques act on grains without friction, which have no spins: give the fix a friction (0.0001 will "
+                   "do where its own contacts are to have none), or leave out what makes them");
   const bool told_of_torque = tell_of_torque();
   *this = {};
   told_of_torque_ = told_of_torque;

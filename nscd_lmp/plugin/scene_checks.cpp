@@ -120,8 +120,8 @@ void SceneChecks::require_future_bonds_listed() const
   if (atom->molecular == Atom::ATOMIC || lists_pairs(1)) return;
   for (Fix *other : modify->get_fix_list())
     if (begins_with_one_of(other->style, {"bond/create", "bond/react"}))
-      nscd::fail("fix ", other->id, " (style ", other->style, ") makes bonds, and special_bonds leaves bonded pairs out ",
-                 "of the neighbor list, so that they would pass through each other: use `special_bonds lj 1 1 1`");
+      nscd::fail("fix ", other->id, " (style ", other->style, ") makes bonds, and special_bonds leaves bonded pairs ",
+                 "out of the neighbor list, so that they would pass through each other: use `special_bonds lj 1 1 1`");
 }
 
 // Whether pairs of the first kind with the second can be contacts: both are there, and one of them moves.
