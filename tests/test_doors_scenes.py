@@ -141,8 +141,17 @@ def test_wall_that_slants_along_a_periodic_direction_is_refused(balls, door, bou
 @BOTH
 def test_wall_that_slants_along_the_edges_of_a_tilted_box_is_refused(balls, door):
     lmp = balls(boundary="p p f", after="change_box all triclinic xy final 1")
-    harden(lmp, door, walls=[FLOOR])
-    lmp.command("run 1")  # the floor holds both edges
+    floor = nscd_lmp.Plane((0, 0, -1), (0, 0, 1))
+    attached = harden(lmp, door, walls=[floor])
+    lmp.command("run 1")  # it holds both edges
+    if attached:
+        attached.detach()
+    else:
+        lmp.command("unfix nscd")
+    lmp.command("change_box all boundary f p f")  # the second edge is no longer along y
+    harden(lmp, door, walls=[floor, nscd_lmp.Plane((-2.5, 0, 0), (1, 0, 0))])
+    with pytest.raises(refusal(door), match=r"wall 2: its normal has a component 0\.16.* along y"):
+        lmp.command("run 1")
 
 
 @BOTH
