@@ -95,16 +95,20 @@ class Inspection:
         listed = style if not sub_styles else "zero" if "zero" in sub_styles else sub_styles[0]
         types = self._setting("ntypes")
         # Granular styles list pairs by the grains' own radii.
-        known = not listed.startswith("gran") and (types == 1 or style == "zero")
+        known = types == 1 and not listed.startswith("gran")
         cutoff = self.neighbor_cutoff()
-        return ListedPairs(listed, cutoff, self._shorter(types) if style == "zero" and types > 1 else [], known)
+        shorter = self._shorter(types) if style == "zero" and types > 1 else []
+        return ListedPairs(listed, cutoff, shorter, known or bool(shorter))
 
     def _shorter(self, types: int) -> list[float]:
-        """Return by how much the cutoffs of ``pair_style zero`` are shorter than the largest, (types x types)."""
+        """Return by how much the cutoffs of ``pair_style zero`` are shorter than the largest, (types x types).
+
+        Empty for a LAMMPS that does not tell.
+        """
         rows = re.findall(r"pair_coeff (\d+) (\d+) (\S+)", self.written("write_coeff {}"))
         cutoffs = {(int(a), int(b)): float(cutoff) for a, b, cutoff in rows}
         if len(cutoffs) != types * (types + 1) // 2:
-            raise NscdError("LAMMPS did not tell the cutoffs of the pairs of types: give all the same, pair_coeff * *")
+            return []
         largest = max(cutoffs.values())
         pairs = [(min(a, b) + 1, max(a, b) + 1) for a in range(types) for b in range(types)]
         # They are written with six digits.

@@ -1,4 +1,4 @@
-"""Runs for test_doors_ranks.py, ``mpiexec -n P python doors_ranks_scene.py DOOR ANSWERS``: writes what ranks are told."""
+"""Runs for test_doors_ranks.py: ``mpiexec -n P python doors_ranks_scene.py DOOR ANSWERS`` leaves what ranks say."""
 
 from __future__ import annotations
 

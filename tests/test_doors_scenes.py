@@ -286,6 +286,13 @@ def test_pair_style_lists_the_contacts_or_is_refused_and_the_remedy_works(balls,
     require_that_they_meet(lmp)
 
 
+def test_types_of_obstacles_alone_need_no_cutoff(balls):
+    lmp = balls(f"{ZERO}\npair_coeff 2 2 0.1", types=2, after="velocity two set 0 0 0")
+    nscd_lmp.attach(lmp, "one")
+    lmp.command("run 100")
+    np.testing.assert_allclose(places(lmp), [-0.4, 0.6], rtol=0, atol=1e-9)
+
+
 @BOTH
 def test_grains_of_mixed_sizes_are_not_taken_for_excluded_ones(door, start, recwarn):
     random = np.random.default_rng(1)
