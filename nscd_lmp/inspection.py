@@ -14,7 +14,7 @@ from nscd_lmp.ranks import Ranks
 INTEGRATORS = re.compile(r"^(nve|nvt|nph|npt|nvk|rigid|move|brownian|bd|poems|nscd|npu|qbmsst|gjf|wall/move)")
 
 # Styles that move grains without integrating them; those that change the box are found by that.
-MOVERS = re.compile(r"^(recenter|append/atoms|widom|gcmc|atom/swap|mol/swap)")
+MOVERS = re.compile(r"^(recenter|wall/reflect|wall/diffusive|append/atoms|widom|gcmc|atom/swap|mol/swap)")
 BONDING = re.compile(r"^bond/(create|react)")
 SHAPES = ("body", "line", "tri", "ellipsoid")
 

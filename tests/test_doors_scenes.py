@@ -225,6 +225,12 @@ def test_integrator_is_found_by_what_it_does(balls, door, boundary, check):
 
 MOVES: dict[str, tuple[str, str]] = {
     "recenter": ("fix frame all recenter INIT INIT INIT", "run 20"),
+    "reflect": ("fix top all wall/reflect zhi 0.045\nvelocity all set 0 0 1 sum yes", "run 20"),
+    "pour": (
+        "region source block -2 2 -2 2 1 2.5\nfix gravity all gravity 9.81 vector 0 0 -1\n"
+        "fix pour all pour 20 1 12345 region source diam one 0.9",
+        "run 40",
+    ),
     "deform": ("fix box all deform 1 y scale 1.01 remap x", "run 20"),
     "between pieces": ("", 'run 20 every 5 "displace_atoms all move 0.01 0 0"'),
     "between pieces without setup": ("run 0", 'run 20 pre no every 5 "displace_atoms all move 0.01 0 0"'),
@@ -235,7 +241,7 @@ MOVES: dict[str, tuple[str, str]] = {
 @pytest.mark.parametrize("what", MOVES)
 def test_what_moves_grains_and_is_no_integrator_may(balls, door, what):
     before, run = MOVES[what]
-    lmp = balls(boundary="p p p", after=before)
+    lmp = balls(boundary="p p f" if what in ("reflect", "pour") else "p p p", after=before)
     harden(lmp, door)
     lmp.command("run 0")
     lmp.command(run)
