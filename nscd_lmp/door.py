@@ -4,10 +4,12 @@ Needs LAMMPS' C interface alone, so it serves any build that has ``fix external`
 code from end to end; Python is entered only by a Python solver.
 """
 
+import contextlib
 import ctypes
 import re
 import warnings
 from collections.abc import Callable, Sequence
+from dataclasses import astuple
 from typing import Any, Literal
 
 import numpy as np
@@ -17,7 +19,7 @@ from nscd_lmp import _core, ghost_homes
 from nscd_lmp.attached import Attached
 from nscd_lmp.command_lines import split_commands
 from nscd_lmp.contact_system import ContactSystem
-from nscd_lmp.inspection import Inspection
+from nscd_lmp.inspection import MOVERS, Inspection
 from nscd_lmp.ranks import Ranks
 from nscd_lmp.step_fix import FIX_ID, address, definition
 from nscd_lmp.walls import Plane
@@ -201,15 +203,14 @@ class _Door:
                 "another attach() is at work on this LAMMPS object: detach() it first, and attach to the union of"
                 " the groups"
             )
-        pair_style = self.inspection.pair_style()
-        cutoff = self.inspection.neighbor_cutoff()
+        self.inspection.require_spheres()
+        listed = self.inspection.listed_pairs()
         addresses = {name: ctypes.cast(getattr(lmp.lib, name), ctypes.c_void_p).value for name in ADDRESSES}
         addresses["handle"] = address(lmp.lmp)
         group_bit = self.inspection.group_bit(group)
         find_homes = ghost_homes.finder(lmp, ranks) if ranks else None
-        self.fix = _core.ExternalFix(
-            addresses, FIX_ID, pair_style, cutoff, group_bit, keywords, solver, ranks, find_homes
-        )
+        self.fix = _core.ExternalFix(addresses, FIX_ID, group_bit, keywords, solver, ranks, find_homes)
+        self.fix.set_listed_pairs(*astuple(listed))
         for doubt in [*filter(None, [self.fix.crowding]), *self.fix.doubts()]:
             warnings.warn(doubt, stacklevel=3)
         self.methods = {name: getattr(lmp, name) for name in COMMAND_METHODS}
@@ -221,7 +222,9 @@ class _Door:
 
     def add_fix(self) -> None:
         """Define the fix that calls the step."""
-        self.define(self.lmp, self.methods["command"], self.group, self.fix)
+        # A dynamic group is refused by fix external; the step itself knows whom it moves.
+        group = "all" if self.inspection.is_dynamic(self.group) else self.group
+        self.define(self.lmp, self.methods["command"], group, self.fix)
 
     def watched(self, name: str) -> Callable[..., Any]:
         """Return the LAMMPS method, made to look before a run and to raise what stopped it."""
@@ -237,6 +240,7 @@ class _Door:
     def watched_command(self, command: str) -> Any:
         """Give LAMMPS one command."""
         word = (command.split() or [""])[0]
+        self.refuse_rerun(command)
         if word in RUNNING:
             self.before_run(command)
         try:
@@ -245,8 +249,16 @@ class _Door:
             self.remeasure = self.remeasure or word.startswith(LIST_COMMANDS) or word in RUNNING[1:]
             self.after_run()
 
+    def refuse_rerun(self, commands: str) -> None:
+        """Raise for a ``rerun`` among the commands: every frame that it reads would be taken for a step, and moved."""
+        named = re.search(r"^[^#]*\brerun\b", commands, re.MULTILINE)
+        if named and any(fix.id == FIX_ID for fix in self.inspection.fixes()):
+            raise _core.NscdError("rerun reads frames and takes no steps, so there are no contacts: detach() before it")
+
     def watched_file(self, path: str) -> Any:
         """Give LAMMPS a script, whose commands cannot be looked at; the step refuses a fix that comes after it."""
+        with contextlib.suppress(OSError), open(path, encoding="utf-8", errors="replace") as file:
+            self.refuse_rerun(file.read())
         self.before_run("file")
         try:
             return self.methods["file"](path)
@@ -260,6 +272,9 @@ class _Door:
         if not any(fix.id == FIX_ID for fix in fixes):
             return
         self.inspection.refuse_integrators(fixes, FIX_ID, self.group)
+        self.inspection.refuse_bonding(fixes)
+        movers = any(MOVERS.match(fix.style) for fix in fixes)
+        self.fix.set_fixes(self.inspection.held_groups(fixes), movers)
         if fixes[-1].id != FIX_ID:
             if re.search(r"\bpre\s+(no|off|false)\b", command):
                 raise _core.NscdError(
@@ -268,7 +283,7 @@ class _Door:
             self.methods["command"](f"unfix {FIX_ID}")
             self.add_fix()
         if self.remeasure:
-            self.fix.set_cutoff(self.inspection.neighbor_cutoff())
+            self.fix.set_listed_pairs(*astuple(self.inspection.listed_pairs()))
             self.remeasure = False
 
     def after_run(self) -> None:

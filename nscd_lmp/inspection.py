@@ -9,8 +9,28 @@ from typing import Any
 from nscd_lmp._core import NscdError
 from nscd_lmp.ranks import Ranks
 
-# Styles that advance positions; `nve/noforce` and the like included.
+# Styles that advance positions, to be named before the run; whatever else does is found by the step, which looks at
+# where grains are.
 INTEGRATORS = re.compile(r"^(nve|nvt|nph|npt|nvk|rigid|move|brownian|bd|poems|nscd|npu|qbmsst|gjf|wall/move)")
+
+# Styles that move grains without integrating them; those that change the box are found by that.
+MOVERS = re.compile(r"^(recenter|wall/reflect|wall/diffusive|append/atoms|widom|gcmc|atom/swap|mol/swap)")
+BONDING = re.compile(r"^bond/(create|react)")
+SHAPES = ("body", "line", "tri", "ellipsoid")
+
+
+@dataclass(frozen=True)
+class ListedPairs:
+    """Which neighbor list has the contact pairs, and how far it reaches; the arguments of ``set_listed_pairs``.
+
+    `cutoff` is the largest pair cutoff plus skin (m), `shorter` by how much those of pairs of types are shorter, row by
+    row, or empty.
+    """
+
+    pair_style: str
+    cutoff: float
+    shorter: list[float]
+    cutoffs_known: bool
 
 
 @dataclass(frozen=True)
@@ -32,11 +52,22 @@ class Inspection:
         self._atoms = lmp.extract_atom
 
     def info(self, *topics: str) -> str:
-        """Return what ``info`` prints on the topics."""
+        """Return what ``info`` prints on the topics; raise if LAMMPS could not write all of it."""
+        text = self.written(f"info {' '.join(topics)} out overwrite {{}}")
+        rule = "Info-Info-Info"
+        if not text.strip().startswith(rule) or text.strip().count(f"\n{rule}") != 1:
+            raise NscdError(
+                f"LAMMPS could not write what it is asked for to the folder {tempfile.gettempdir()}: is it full? Make"
+                " room, or set TMPDIR to another folder"
+            )
+        return text
+
+    def written(self, command: str) -> str:
+        """Return what LAMMPS writes by a command to the file whose name takes the place of ``{}``."""
         handle, path = tempfile.mkstemp(prefix="nscd_info")
         os.close(handle)
         try:
-            self._command(f"info {' '.join(topics)} out overwrite {path}")
+            self._command(command.format(path))
             with open(path, encoding="utf-8") as file:
                 text = file.read()
             # Rank 0 alone writes.
@@ -49,15 +80,51 @@ class Inspection:
         found = re.findall(r"Fix\[ *\d+\]: *(\S+), *style = (\S+), *group = (\S+)", self.info("fixes"))
         return [FixInfo(*row) for row in found]
 
-    def pair_style(self) -> str:
-        """Return the name of the pair style, whose neighbor list gives the contact pairs."""
-        found = re.search(r"Atoms +=.*style = (\S+)", self.info("system"))
+    def require_spheres(self) -> None:
+        """Raise if atoms have a shape that is not a sphere's."""
+        found = re.search(r"Atom style +=(.*)", self.info("system"))
+        for shape in set(found[1].split() if found else ()) & set(SHAPES):
+            raise NscdError(
+                f"atom_style {shape} is not of spheres, and grains would be taken for some: use atom_style sphere"
+            )
+
+    def listed_pairs(self) -> ListedPairs:
+        """Return which neighbor list gives the contact pairs, and how far it reaches."""
+        style, sub_styles = self._pair_styles()
+        # In hybrid styles `zero`, which has one cutoff for all, is there for the contacts.
+        listed = style if not sub_styles else "zero" if "zero" in sub_styles else sub_styles[0]
+        types = self._setting("ntypes")
+        # Granular styles list pairs by the grains' own radii.
+        known = types == 1 and not listed.startswith("gran")
+        cutoff = self.neighbor_cutoff()
+        shorter = self._shorter(types) if style == "zero" and types > 1 else []
+        return ListedPairs(listed, cutoff, shorter, known or bool(shorter))
+
+    def _shorter(self, types: int) -> list[float]:
+        """Return by how much the cutoffs of ``pair_style zero`` are shorter than the largest, (types x types).
+
+        Empty for a LAMMPS that does not tell.
+        """
+        rows = re.findall(r"pair_coeff (\d+) (\d+) (\S+)", self.written("write_coeff {}"))
+        cutoffs = {(int(a), int(b)): float(cutoff) for a, b, cutoff in rows}
+        if len(cutoffs) != types * (types + 1) // 2:
+            return []
+        largest = max(cutoffs.values())
+        pairs = [(min(a, b) + 1, max(a, b) + 1) for a in range(types) for b in range(types)]
+        # They are written with six digits.
+        return [0.0 if cutoffs[pair] == largest else largest * (1 + 1e-5) - cutoffs[pair] for pair in pairs]
+
+    def _pair_styles(self) -> tuple[str, list[str]]:
+        """Return the pair style and, of a hybrid one, its sub-styles."""
+        text = self.info("system")
+        found = re.search(r"Atoms +=.*style = (\S+)", text)
         if not found or found[1] == "none":
             raise NscdError(
                 "no pair style is defined, so there is no neighbor list: use pair_style zero CUTOFF with a"
                 " cutoff of the largest diameter plus what two grains can move in a step, and pair_coeff * *"
             )
-        return found[1]
+        sub_styles = re.search(r"Hybrid sub-styles:(.*)", text)
+        return found[1], sub_styles[1].split() if sub_styles else []
 
     def group_bit(self, group: str) -> int:
         """Return the group's bit in the atoms' mask."""
@@ -67,6 +134,10 @@ class Inspection:
                 return 1 << int(index)
         raise NscdError(f"unknown group {group!r}: choose one of {', '.join(name for _, name in listed)}")
 
+    def is_dynamic(self, group: str) -> bool:
+        """Return whether atoms may come into the group and leave it during a run."""
+        return bool(re.search(rf"Group\[ *\d+\]: *{re.escape(group)} *\(dynamic\)", self.info("groups")))
+
     def neighbor_cutoff(self) -> float:
         """Return pair cutoff plus skin, the distance within which pairs are listed.
 
@@ -74,24 +145,45 @@ class Inspection:
         and prints it only as a lower bound of the communication cutoff; that is set to 0 meanwhile.
         """
         self._command(f"write_restart {os.devnull}")
-        shown = self._communication_cutoff()
-        self._command("comm_modify cutoff 0.0")
-        cutoff = self._communication_cutoff()
-        if shown > cutoff:
-            self._command(f"comm_modify cutoff {shown!r}")
-        return cutoff
+        shown = self._communication_cutoffs()
+        multi = "" not in shown
+        self._command("comm_modify cutoff/multi * 0.0" if multi else "comm_modify cutoff 0.0")
+        cutoffs = self._communication_cutoffs()
+        for collection, cutoff in shown.items():
+            if cutoff > cutoffs[collection]:
+                self._command(f"comm_modify cutoff{'/multi' * multi} {collection} {cutoff * (1 + 1e-7 * multi)!r}")
+        # Those of collections are written with eight digits.
+        return max(cutoffs.values()) * (1 - 1e-7 * multi)
 
-    def _communication_cutoff(self) -> float:
-        found = re.search(r"Communication cutoff = (\S+)", self.info("communication"))
+    def _communication_cutoffs(self) -> dict[str, float]:
+        """Return the communication cutoff, or those of the collections of ``comm_modify mode multi`` by number."""
+        found = re.findall(r"Communication cutoff(?: for collection (\d+))? = (\S+)", self.info("communication"))
         if not found:
-            raise NscdError("LAMMPS did not tell its communication cutoff")
-        return float(found[1])
+            raise NscdError("LAMMPS did not tell its communication cutoff: use comm_modify mode single")
+        return {collection: float(cutoff) for collection, cutoff in found}
 
     def share_atoms(self, first: str, second: str) -> bool:
         """Return whether an atom is in both groups."""
         both = self.group_bit(first) | self.group_bit(second)
         here = any(mask & both == both for mask in self._atoms("mask")[: self._setting("nlocal")])
         return any(self._ranks.comm.allgather(here)) if self._ranks else here
+
+    def held_groups(self, fixes: list[FixInfo]) -> int:
+        """Return the bits of the groups that ``fix freeze`` holds."""
+        bits = 0
+        for fix in fixes:
+            bits |= self.group_bit(fix.group) if fix.style == "freeze" else 0
+        return bits
+
+    def refuse_bonding(self, fixes: list[FixInfo]) -> None:
+        """Raise if a fix makes bonds whose pairs LAMMPS would leave out of the neighbor list."""
+        bonding = [fix for fix in fixes if BONDING.match(fix.style)]
+        factors = re.search(r"Special bond factors lj = +(\S+)", self.info("system")) if bonding else None
+        if factors and float(factors[1]) == 0:
+            raise NscdError(
+                f"fix {bonding[0].id} (style {bonding[0].style}) makes bonds, and special_bonds leaves bonded pairs out"
+                " of the neighbor list, so that they would pass through each other: use `special_bonds lj 1 1 1`"
+            )
 
     def refuse_integrators(self, fixes: list[FixInfo], own_id: str, group: str) -> None:
         """Raise if another fix moves atoms of the group."""

@@ -2,22 +2,23 @@
 
 #include "arrays.hpp"
 
+#include "../core/bonded.hpp"
 #include "../core/doubts.hpp"
 #include "../core/error.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace nscd {
 
 // Steps since the run began, at the first call: fix external calls in the setup too, fix python/invoke does not.
 constexpr int in_setup = 0, in_first_step = 1;
 
-ExternalFix::ExternalFix(const Library &library, const std::string &id, const std::string &pair_style, double cutoff,
-                         int group_bit, const Settings &settings, Step::CustomSolver custom, nanobind::object ranks,
-                         nanobind::object find_homes) :
+ExternalFix::ExternalFix(const Library &library, const std::string &id, int group_bit, const Settings &settings,
+                         Step::CustomSolver custom, nanobind::object ranks, nanobind::object find_homes) :
     library_(library),
-    id_(id), pair_style_(pair_style), cutoff_(cutoff), group_bit_(group_bit),
+    id_(id), group_bit_(group_bit),
     ranks_(ranks.is_none() ? nullptr : std::make_unique<PythonRanks>(ranks)), find_homes_(std::move(find_homes)),
     step_(settings, std::move(custom), setting("dimension"), ranks_.get())
 {
@@ -40,7 +41,7 @@ void ExternalFix::guarded(int first_call)
   try {
     const double elapsed = library_.get_thermo(library_.handle, "elapsed");
     if (elapsed == first_call) begin_run(first_call);
-    if (elapsed > 0) advance();
+    if (elapsed > 0) advance(elapsed);
   } catch (...) {
     failure_ = std::current_exception();
     library_.force_timeout(library_.handle);
@@ -51,17 +52,68 @@ void ExternalFix::begin_run(int first_call)
 {
   require_atoms();
   require_last();
+  require_walls_repeat(step_.settings(), box());
   find_list();
   homes_.clear();
+  reach_.begin_run();
   // A list that the setup built is as old as the run; grains stay where they are until the first step.
-  step_.begin_run(setting("neigh_ago") <= first_call);
+  new_list_ = setting("neigh_ago") <= first_call;
+  step_.begin_run(new_list_);
 }
 
-void ExternalFix::advance()
+void ExternalFix::advance(double elapsed)
 {
+  require_next_step(elapsed);
   const Grains g = grains();
+  forget_places(elapsed);
   step_.advance(g, pairs(g), *library_.global<double>("dt"));
-  record(timestep());
+  last_step_ = timestep();
+  record(last_step_);
+}
+
+// `rerun` sets up frame after frame and takes no steps.
+void ExternalFix::require_next_step(double elapsed)
+{
+  if (elapsed > 1 && timestep() != last_step_ + 1)
+    fail("timestep ", timestep(), " follows ", last_step_, ": `rerun` reads frames, and each would be taken for a ",
+         "step: detach before it");
+}
+
+// Scripts may move grains between runs and between the pieces of `run every`, and what moves the box moves grains.
+void ExternalFix::forget_places(double elapsed)
+{
+  const BoxEdges now = box();
+  if (elapsed <= 1 || std::memcmp(now.edge, last_box_.edge, sizeof now.edge) != 0) step_.forget_places();
+  last_box_ = now;
+}
+
+BoxEdges ExternalFix::box() const
+{
+  const double *low = library_.global<double>("boxlo"), *high = library_.global<double>("boxhi");
+  const int *periodic = library_.global<int>("periodicity");
+  BoxEdges box{{{high[0] - low[0], 0, 0}, {0, high[1] - low[1], 0}, {0, 0, high[2] - low[2]}},
+               {periodic[0] != 0, periodic[1] != 0, periodic[2] != 0}};
+  const int *triclinic = library_.global<int>("triclinic");
+  if (!triclinic || !*triclinic) return box;
+  box.edge[1][0] = *library_.global<double>("xy");
+  box.edge[2][0] = *library_.global<double>("xz");
+  box.edge[2][1] = *library_.global<double>("yz");
+  return box;
+}
+
+// On all ranks; LAMMPS of before 2022 does not tell its special_bonds.
+void ExternalFix::require_bonds_listed(const Grains &g)
+{
+  const auto *bonds = library_.global<std::int64_t>("nbonds");
+  const double *lj = library_.global<double>("special_lj"), *coulomb = library_.global<double>("special_coul");
+  if (!bonds || *bonds == 0 || !lj || !coulomb) return;
+  Bonded bonded{library_.per_atom<const int *>("nspecial"), {}};
+  for (int k = 0; k < 3; ++k) bonded.listed[k] = lj[k + 1] != 0 || coulomb[k + 1] != 0;
+  if (bonded.all_listed()) return;
+  // Templates keep the partners of their atoms to themselves.
+  double tag = bonded.partners || g.owned == 0 ? find_unlisted(bonded, g) : g.tag[0];
+  if (ranks_) ranks_->max({&tag, 1});
+  require_listed(std::int32_t(tag));
 }
 
 int ExternalFix::setting(const char *name) const { return library_.extract_setting(library_.handle, name); }
@@ -86,8 +138,10 @@ void ExternalFix::require_last() const
 
 void ExternalFix::find_list()
 {
-  list_ = library_.find_pair_neighlist(library_.handle, pair_style_.c_str(), 1, 0, 0);
-  if (list_ < 0) fail("pair_style ", pair_style_, " has no neighbor list: use pair_style zero CUTOFF");
+  list_ = library_.find_pair_neighlist(library_.handle, reach_.pair_style().c_str(), 1, 0, 0);
+  if (list_ < 0)
+    fail("pair_style ", reach_.pair_style(), " has no neighbor list: use pair_style zero CUTOFF, beside other styles ",
+         "`pair_style hybrid/overlay zero CUTOFF ...` with `pair_coeff * * zero`");
 }
 
 std::int64_t ExternalFix::timestep() const { return *library_.global<std::int64_t>("ntimestep"); }
@@ -140,6 +194,8 @@ Grains ExternalFix::grains()
   if (step_.settings().frictional()) {
     g.omega = *library_.per_atom<double *>("omega");
     if (double **torque = library_.per_atom<double *>("torque")) g.torque = *torque;
+  } else if (double **torque = library_.per_atom<double *>("torque")) {
+    g.unread_torque = *torque;
   }
   g.radius = library_.per_atom<double>("radius");
   g.tag = library_.per_atom<std::int32_t>("id");
@@ -152,15 +208,21 @@ Grains ExternalFix::grains()
     for (int i = 0; i < g.owned; ++i) masses_[i] = by_type[type[i]];
     g.mass = masses_.data();
   }
+  g.group = group_bit_;
+  g.held = held_;
+  g.watched = !movers_;
   // LAMMPS drops grains when it builds lists. Whether the list is new is the same on all ranks.
   const bool new_list = !ranks_ || setting("neigh_ago") <= 0 || homes_.empty();
-  if (new_list) require_all_grains(g.owned);
+  if (new_list) {
+    require_all_grains(g.owned);
+    require_bonds_listed(g);
+  }
   if (ranks_) {
     if (new_list) find_homes(g);
     g.home = homes_.data();
   }
-  g.group = group_bit_;
   g.force_to_acceleration = *library_.global<double>("ftm2v");
+  g.square_to_energy = *library_.global<double>("mvv2e");
   return g;
 }
 
@@ -180,14 +242,32 @@ PairList ExternalFix::pairs(const Grains &g)
   p.cross_pairs_twice = setting("newton_pair") == 0;
   // Builds before 2023 do not tell the list's age (-1): every list is taken as new, which weakens the check on it.
   p.just_built = setting("neigh_ago") <= 0;
-  if (p.just_built || largest_radius_ == 0)
-    largest_radius_ = g.owned ? *std::max_element(g.radius, g.radius + g.owned) : 0;
-  p.reach = cutoff_ - 2 * largest_radius_;
+  const bool at_its_places = p.just_built || new_list_;
+  if (at_its_places || list_reach_ == 0)
+    list_reach_ = reach_.measure(g, library_.per_atom<int>("type"), setting("ntypes"), ranks_.get());
+  p.reach = list_reach_;
+  if (at_its_places)
+    leaves_out_pairs_ = reach_.leaves_out_pairs(g, p, timestep(), library_.get_natoms(library_.handle), ranks_.get());
+  p.excludes = leaves_out_pairs_;
+  new_list_ = false;
   return p;
 }
 
+std::vector<std::string> ExternalFix::take_remarks()
+{
+  std::vector<std::string> remarks = step_.take_remarks();
+  if (std::exchange(leaves_out_pairs_, false))
+    remarks.push_back("pairs of grains are near each other and not on the neighbor list, as `neigh_modify exclude` has "
+                      "it: they are never contacts");
+  return remarks;
+}
+
+// LAMMPS' arrays, tags among them, are others by the time that somebody asks.
 void ExternalFix::record(std::int64_t timestep)
 {
+  const State &state = step_.state();
+  contact_rows_.resize(state.contacts.size() * contact_columns(state.settings));
+  fill_contact_rows(state, contact_rows_.data());
   const StepReport &report = step_.report();
   StatsRow row{timestep, {}, report.seconds_contacts, report.seconds_solver};
   for (int c = 0; c < report_columns; ++c) row.columns[c] = report_column(report, c);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "../core/report.hpp"
+#include "../core/periodic_walls.hpp"
 #include "../core/step.hpp"
 #include "library.hpp"
+#include "list_reach.hpp"
 #include "python_ranks.hpp"
 
 #include <nanobind/nanobind.h>
@@ -24,12 +26,10 @@ struct StatsRow {
 
 class ExternalFix {
  public:
-  // `cutoff`: pair cutoff plus skin, m, up to which centres are listed at a build. `ranks`: as PythonRanks takes it,
-  // and `find_homes` a function of images' places and tags and of owned tags (nscd_lmp/ghost_homes.py); None on one
-  // rank.
-  ExternalFix(const Library &library, const std::string &id, const std::string &pair_style, double cutoff,
-              int group_bit, const Settings &settings, Step::CustomSolver custom, nanobind::object ranks,
-              nanobind::object find_homes);
+  // `ranks`: as PythonRanks takes it, and `find_homes` a function of images' places and tags and of owned tags
+  // (nscd_lmp/ghost_homes.py); None on one rank.
+  ExternalFix(const Library &library, const std::string &id, int group_bit, const Settings &settings,
+              Step::CustomSolver custom, nanobind::object ranks, nanobind::object find_homes);
 
   // Called by LAMMPS with the step's arrays: the signature of FixExternalFnPtr.
   static void callback(void *self, std::int64_t timestep, int owned, int *tags, double **x, double **f_external);
@@ -37,11 +37,15 @@ class ExternalFix {
   void invoke(nanobind::handle lammps, int vflag);
 
   const Step &step() const { return step_; }
+  // Of the last step that was taken, contact after contact, as fill_contact_rows has them.
+  const std::vector<double> &contact_rows() const { return contact_rows_; }
   // Hands over the rows since the last call.
   std::vector<StatsRow> take_stats() { return std::exchange(stats_, {}); }
-  std::vector<std::string> take_remarks() { return step_.take_remarks(); }
+  std::vector<std::string> take_remarks();
   std::vector<std::string> doubts() const;  // about a scene before its first step
-  void set_cutoff(double cutoff) { cutoff_ = cutoff; }
+  // Before runs. `held`: bits of the groups of fix freeze; `movers`: fixes move grains that do not integrate them.
+  void set_listed_pairs(ListedPairs listed) { reach_.set(std::move(listed)); }
+  void set_fixes(int held, bool movers) { held_ = held, movers_ = movers; }
 
   // What stopped the run; empty if nothing did. Reading it forgets it.
   std::exception_ptr take_failure() { return std::exchange(failure_, nullptr); }
@@ -50,7 +54,11 @@ class ExternalFix {
  private:
   void guarded(int first_call);
   void begin_run(int first_call);
-  void advance();
+  void advance(double elapsed);
+  void require_next_step(double elapsed);
+  void forget_places(double elapsed);
+  BoxEdges box() const;
+  void require_bonds_listed(const Grains &grains);
   int setting(const char *name) const;
   void require_atoms() const;
   void require_last() const;
@@ -63,8 +71,7 @@ class ExternalFix {
   std::int64_t timestep() const;
 
   Library library_;
-  std::string id_, pair_style_;
-  double cutoff_;
+  std::string id_;
   int group_bit_;
   std::unique_ptr<PythonRanks> ranks_;   // none on one rank
   nanobind::object find_homes_;
@@ -74,7 +81,15 @@ class ExternalFix {
   std::vector<int *> first_;
   std::vector<double> masses_;
   std::vector<StatsRow> stats_;
-  double largest_radius_ = 0;
+  std::vector<double> contact_rows_;
+  ListReach reach_;
+  double list_reach_ = 0;
+  bool new_list_ = true;              // a run has begun with one
+  bool leaves_out_pairs_ = false;
+  int held_ = 0;
+  bool movers_ = false;
+  BoxEdges last_box_{};
+  std::int64_t last_step_ = 0;
   std::exception_ptr failure_;
 };
 

@@ -116,11 +116,9 @@ nb::bytes take_stats(ExternalFix &fix)
 
 nb::ndarray<nb::numpy, double> contact_rows(const ExternalFix &fix)
 {
-  const State &state = fix.step().state();
-  const std::size_t columns = nscd::contact_columns(state.settings);
-  std::vector<double> rows(state.contacts.size() * columns);
-  nscd::fill_contact_rows(state, rows.data());
-  return make_array<double>(state.contacts.size(), columns, [&](auto k, auto c) { return rows[k * columns + c]; });
+  const std::size_t columns = nscd::contact_columns(fix.step().settings());
+  const std::vector<double> &rows = fix.contact_rows();
+  return make_array<double>(rows.size() / columns, columns, [&](auto k, auto c) { return rows[k * columns + c]; });
 }
 
 nb::dict traffic(const ExternalFix &fix)
@@ -177,22 +175,27 @@ void bind_external_fix(nb::module_ &m)
   nb::class_<ExternalFix>(m, "ExternalFix")
       .def(
           "__init__",
-          [](ExternalFix *self, const nb::dict &library, const std::string &id, const std::string &pair_style,
-             double cutoff, int group_bit,
+          [](ExternalFix *self, const nb::dict &library, const std::string &id, int group_bit,
              const std::vector<std::string> &keywords, nb::object solver, nb::object ranks, nb::object find_homes) {
             nscd::Settings settings;
             nscd::parse_keywords(settings, keywords);
-            new (self) ExternalFix(make_library(library), id, pair_style, cutoff, group_bit, settings,
+            new (self) ExternalFix(make_library(library), id, group_bit, settings,
                                    python_solver(std::move(solver)), std::move(ranks), std::move(find_homes));
           },
-          "library"_a, "id"_a, "pair_style"_a, "cutoff"_a, "group_bit"_a, "keywords"_a, "solver"_a.none(),
+          "library"_a, "id"_a, "group_bit"_a, "keywords"_a, "solver"_a.none(),
           "ranks"_a.none(), "find_homes"_a.none())
       .def_prop_ro("callback_address", [](const ExternalFix &) { return std::uintptr_t(&ExternalFix::callback); })
       .def_prop_ro("self_address", [](const ExternalFix &fix) { return std::uintptr_t(&fix); })
       .def("invoke", &ExternalFix::invoke)
       .def("doubts", &ExternalFix::doubts)
       .def_prop_ro("crowding", [](const ExternalFix &fix) { return fix.step().crowding(); })
-      .def("set_cutoff", &ExternalFix::set_cutoff, "cutoff"_a)
+      .def(
+          "set_listed_pairs",
+          [](ExternalFix &fix, const std::string &pair_style, double cutoff, std::vector<double> shorter, bool known) {
+            fix.set_listed_pairs({pair_style, cutoff, std::move(shorter), known});
+          },
+          "pair_style"_a, "cutoff"_a, "shorter"_a, "cutoffs_known"_a)
+      .def("set_fixes", &ExternalFix::set_fixes, "held"_a, "movers"_a)
       .def_prop_ro("failed", &ExternalFix::failed)
       .def("take_remarks", &ExternalFix::take_remarks)
       .def("raise_failure", [](ExternalFix &fix) { if (auto e = fix.take_failure()) std::rethrow_exception(e); })

@@ -25,7 +25,7 @@ struct Search {
   const Grains &g = s.grains;
   if (!(g.radius[i] > 0 && std::isfinite(g.radius[i])))
     fail("grain ", g.tag[i], " has radius ", g.radius[i], ": nscd needs spheres of finite radius > 0");
-  if ((g.mask[i] & g.group) && !(g.mass[i] > 0 && std::isfinite(g.mass[i])))
+  if (g.moves(i) && !(g.mass[i] > 0 && std::isfinite(g.mass[i])))
     fail("grain ", g.tag[i], " has mass ", g.mass[i], ": every grain of the group needs a finite mass > 0");
   fail("grain ", g.tag[i], " has a position, velocity or force that is not a finite number");
 }
@@ -36,7 +36,7 @@ NSCD_INLINE void load_body(State &s, int i, const Search &search, Largest &large
 {
   const Grains &g = s.grains;
   const double *x = g.x + 3 * std::size_t(i), *v = g.v + 3 * std::size_t(i), *f = g.f + 3 * std::size_t(i);
-  const bool moves = g.mask[i] & g.group;
+  const bool moves = g.moves(i);
   const double inverse_mass = moves ? 1 / g.mass[i] : 0;
   const Vec4 before{v[0], v[1], v[2], 0};
   const Vec4 kick = Vec4{f[0], f[1], f[2], 0} * (s.dt * g.force_to_acceleration * inverse_mass);
@@ -79,6 +79,26 @@ void place_images(State &s, const Search &search)
 }
 
 }    // namespace
+
+void hold_still(const Grains &g)
+{
+  if (g.held == 0) return;
+  for (int i = 0; i < g.owned; ++i) {
+    if (!(g.mask[i] & g.group) || !(g.mask[i] & g.held)) continue;
+    std::fill_n(g.v + 3 * std::size_t(i), 3, 0.0);
+    if (g.omega) std::fill_n(g.omega + 3 * std::size_t(i), 3, 0.0);
+  }
+}
+
+bool has_unread_torque(const Grains &g)
+{
+  if (!g.unread_torque) return false;
+  for (int i = 0; i < g.owned; ++i) {
+    const double *t = g.unread_torque + 3 * std::size_t(i);
+    if ((t[0] != 0 || t[1] != 0 || t[2] != 0) && g.moves(i)) return true;
+  }
+  return false;
+}
 
 NSCD_HOT Largest gather_owned(State &s, double prediction, double look_ahead)
 {

@@ -13,6 +13,12 @@ struct Largest {
   double smallest_radius = INFINITY;
 };
 
+// Sets the velocities of atoms that are held to 0.
+void hold_still(const Grains &grains);
+
+// Whether a moving grain has a torque that no spin takes.
+bool has_unread_torque(const Grains &grains);
+
 // Bodies and spheres of the owned atoms: free velocities, predicted positions. Contacts are sought at q_k + prediction
 // dt v_k, and look_ahead dt |v| around. Raises Error for a value that is no finite number, a radius or mass that is not
 // positive.

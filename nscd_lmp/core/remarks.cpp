@@ -50,6 +50,7 @@ void Remarks::add(const StepReport &r)
   }
   overlap_ratio_ = std::max(overlap_ratio_, r.largest_overlap_ratio);
   move_ratio_ = std::max(move_ratio_, r.largest_move_ratio);
+  torque_ = torque_ || r.unread_torque;
 }
 
 std::vector<std::string> Remarks::take(const Settings &s, bool looks_ahead)
@@ -69,7 +70,12 @@ std::vector<std::string> Remarks::take(const Settings &s, bool looks_ahead)
   if (!looks_ahead && move_ratio_ > move_worth_saying)
     said.push_back(sentence("grains move by up to ", rounded(move_ratio_), " of the smallest radius in a step, and ",
                             "law ", s.law, " does not see them pass each other: use law gap or a smaller timestep"));
+  if (torque_)
+    said.push_back("torques act on grains without friction, which have no spins: give the fix a friction (0.0001 will "
+                   "do where its own contacts are to have none), or leave out what makes them");
+  const bool told_of_torque = tell_of_torque();
   *this = {};
+  told_of_torque_ = told_of_torque;
   return said;
 }
 

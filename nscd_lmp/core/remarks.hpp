@@ -22,6 +22,8 @@ class Remarks {
   // A sentence, with its remedy, for each thing worth saying of the steps added since the last call. `looks_ahead`: as
   // the contact law does.
   std::vector<std::string> take(const Settings &settings, bool looks_ahead);
+  // Whether there is, or was, something to say of torques: it is said once.
+  bool tell_of_torque() const { return torque_ || told_of_torque_; }
 
  private:
   long steps_ = 0;
@@ -31,6 +33,8 @@ class Remarks {
   double worst_residual_ = 0;   // of those
   double overlap_ratio_ = 0;    // the largest
   double move_ratio_ = 0;       // the largest
+  bool torque_ = false;
+  bool told_of_torque_ = false;
 };
 
 }    // namespace nscd

@@ -34,6 +34,7 @@ int contact_columns(const Settings &settings)
 void fill_contact_rows(const State &s, double *row)
 {
   const int columns = contact_columns(s.settings);
+  const double per_force = s.grains.force_to_acceleration;   // impulses are mass times velocity within
   for (std::size_t k = 0; k < s.contacts.size(); ++k, row += columns) {
     const Contact &c = s.contacts[k];
     const ContactInfo &info = s.infos[k];
@@ -47,10 +48,10 @@ void fill_contact_rows(const State &s, double *row)
       row[5 + d] = c.normal[d];
     }
     row[8] = info.gap;
-    row[9] = c.impulse;
+    row[9] = c.impulse / per_force;
     if (s.friction.model == Model::frictionless) continue;
     const Vec4 tangential = tangential_impulse(s, k);
-    for (int d = 0; d < 3; ++d) row[10 + d] = tangential[d];
+    for (int d = 0; d < 3; ++d) row[10 + d] = tangential[d] / per_force;
   }
 }
 

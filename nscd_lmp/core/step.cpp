@@ -48,6 +48,7 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
 void Step::begin_run(bool list_just_built)
 {
   report_ = {};
+  left_.forget();
   if (list_just_built) list_.expect_new_list();
 }
 
@@ -63,6 +64,7 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
   solve();
   finish();
   write_back();
+  if (grains.watched) left_.remember(state_);
   remarks_.add(report_);
   report_.seconds_contacts = seconds(start, Clock::now()) - report_.seconds_solver;
   return report_;
@@ -78,11 +80,13 @@ void Step::together(const std::function<void()> &local)
 void Step::prepare(const PairList &pairs)
 {
   Largest largest;
-  double reduced[5];
-  auto &[kick2, speed2, moved, unlisted, smallest] = reduced;
+  double reduced[6];
+  auto &[kick2, speed2, moved, unlisted, smallest, torque] = reduced;
+  hold_still(state_.grains);
   together([&] {
     if (state_.dimension == 2) require_planar(state_);
     list_.inspect(state_, pairs);
+    if (state_.grains.watched) left_.require(state_, list_.is_new());
   });
   if (list_.is_new()) state_.slabs.forget();
   if (halo_ && list_.is_new()) {
@@ -92,12 +96,14 @@ void Step::prepare(const PairList &pairs)
   together([&] { largest = gather_owned(state_, prediction_, look_ahead_); });
   kick2 = largest.kick2, speed2 = largest.speed2, moved = list_.farthest_moved(state_), unlisted = -pairs.reach;
   smallest = -largest.smallest_radius;
+  torque = !remarks_.tell_of_torque() && has_unread_torque(state_.grains);
   if (halo_) {
     halo_->share_motion(state_);
     halo_->max(reduced);
   }
   gather_images(state_, prediction_, look_ahead_, {kick2, speed2});
   listed_ = -unlisted;
+  report_.unread_torque = torque > 0;
   const double speed = std::sqrt(speed2);
   state_.round_off = 1e-14 * speed;
   report_.largest_move_ratio = state_.dt * speed / -smallest;

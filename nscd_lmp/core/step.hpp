@@ -5,6 +5,7 @@
 #include "energy_limit.hpp"
 #include "halo.hpp"
 #include "law.hpp"
+#include "left_places.hpp"
 #include "list_guard.hpp"
 #include "remarks.hpp"
 #include "solver.hpp"
@@ -31,6 +32,7 @@ struct StepReport {
   double dissipated = 0;             // J, by contacts since begin_run
   long unconverged = 0;              // steps since begin_run
   long energy_limited = 0;           // steps since begin_run in which impulses were scaled back, since they made energy
+  bool unread_torque = false;        // a frictionless step met torques
   bool converged = true;
   bool jammed = false;               // unconverged, since obstacles approach and nothing can give way
   double seconds_contacts = 0;       // detection, biases, update
@@ -56,6 +58,9 @@ class Step {
   // One step of length dt (s). Raises Error and leaves the arrays as they were if the input is bad, a contact
   // can be missed, or the step does not converge under `unconverged error`.
   const StepReport &advance(const Grains &grains, const PairList &pairs, double dt);
+
+  // Something that is no integrator may have moved grains since the last step.
+  void forget_places() { left_.forget(); }
 
   const StepReport &report() const { return report_; }
   const Settings &settings() const { return settings_; }
@@ -111,6 +116,7 @@ class Step {
   const std::unique_ptr<Team> team_;   // none on one thread
   ListGuard list_;
   const PairList *pairs_ = nullptr;    // of the step
+  LeftPlaces left_;
   WarmStart memory_;
   EnergyLimit energy_limit_;
   SolverOptions options_;

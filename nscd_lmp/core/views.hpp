@@ -16,14 +16,20 @@ struct Grains {
   double *f = nullptr;             // (owned, 3), in: smooth forces; out: mean contact force of the step
   double *omega = nullptr;         // (owned, 3), in: w_k, rad/s; out: w_{k+1}. With friction only, null otherwise
   double *torque = nullptr;        // (owned, 3), in: smooth torques; out: mean contact torque. As omega
+  const double *unread_torque = nullptr;   // (owned, 3), torques of a scene without friction, which turns no grain
   const double *radius = nullptr;  // (owned + ghosts)
   const double *mass = nullptr;    // (owned)
   const std::int32_t *tag = nullptr;   // (owned + ghosts), unique per grain; an image has its grain's
   const int *home = nullptr;       // (ghosts) rank that owns the grain; null on one rank
-  const int *mask = nullptr;       // (owned)
+  const int *mask = nullptr;       // (owned + ghosts)
   int group = 1;                   // an atom moves if mask & group; the others are obstacles of infinite mass
   int later = 0;                   // obstacles of these groups move later in the step, all others have already moved
+  int held = 0;                    // and so are those with mask & held, whose velocities are set to 0
+  bool watched = false;            // nothing else may move grains between two steps, unless Step::forget_places is told
   double force_to_acceleration = 1;  // LAMMPS' ftm2v
+  double square_to_energy = 1;       // LAMMPS' mvv2e: mass times velocity squared in units of energy
+
+  bool moves(int i) const { return (mask[i] & group) && !(mask[i] & held); }
 };
 
 // Half neighbor list in LAMMPS' layout; the top three bits of a neighbor index are flags.
@@ -35,6 +41,7 @@ struct PairList {
   bool cross_pairs_twice = false;        // newton off: a pair with an image is listed from both sides
   double reach = 0;                      // surface distance up to which all pairs were listed when it was built
   bool just_built = false;               // at the positions that this step starts from
+  bool excludes = false;                 // pairs are left out of the list on purpose
 };
 constexpr int neighbor_index_mask = 0x1FFFFFFF;
 

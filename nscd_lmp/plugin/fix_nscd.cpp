@@ -2,6 +2,7 @@
 
 #include "../core/doubts.hpp"
 #include "../core/error.hpp"
+#include "contact_list.hpp"
 #include "progress.hpp"
 
 #include <atom.h>
@@ -37,7 +38,7 @@ auto or_stop(Error *error, const char *id, Body body)
 
 }    // namespace
 
-FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks_(world)
+FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks_(world), checks_(lmp, this, ranks_)
 {
   time_integrate = 1;
   dynamic_group_allow = 1;
@@ -46,7 +47,6 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks
   scalar_flag = vector_flag = array_flag = local_flag = 1;
   size_vector = nscd::report_columns;
   size_array_rows = 1;
-  size_array_cols = nscd::totals_columns;
   size_local_rows = 0;
   global_freq = local_freq = 1;
   extscalar = extvector = extarray = 0;
@@ -59,6 +59,8 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks
     step_ = std::make_unique<nscd::Step>(settings, nscd::Step::CustomSolver{}, domain->dimension, &ranks_);
   });
   size_local_cols = nscd::contact_columns(settings);
+  // As many as rows have, beyond the totals zeros: `dump local f_ID[*]` takes as many columns as the global array has.
+  size_array_cols = std::max(nscd::totals_columns, size_local_cols);
   // Last, since a fix that is refused above has no destructor to take it back.
   atom->add_callback(Atom::RESTART);
 }
@@ -70,59 +72,51 @@ FixNscd::~FixNscd()
 
 int FixNscd::setmask() { return FINAL_INTEGRATE | POST_RUN; }
 
-void FixNscd::check_atoms()
-{
-  if (!atom->radius_flag)
-    error->all(FLERR, "Fix nscd {}: atoms have no radius: use atom_style sphere", id);
-  if (step_->settings().frictional() && !atom->omega_flag)
-    error->all(FLERR,
-               "Fix nscd {}: friction turns grains, but atoms have no angular velocity: use atom_style sphere, or "
-               "leave friction out",
-               id);
-  if (!atom->tag_enable) error->all(FLERR, "Fix nscd {}: atoms have no IDs: use atom_modify id yes", id);
-  if (utils::strmatch(update->integrate_style, "^respa"))
-    error->all(FLERR, "Fix nscd {} needs run_style verlet", id);
-}
-
-void FixNscd::check_integrators()
-{
-  for (Fix *other : modify->get_fix_list()) {
-    if (other == this || !other->time_integrate) continue;
-    if (utils::strmatch(other->style, "^nscd") && comm->me == 0)
-      error->warning(FLERR,
-                     "Fix nscd {}: fix {} is a second fix nscd, and the grains of one are infinitely heavy to the "
-                     "other: where they can meet, use one fix for the union of their groups",
-                     id, other->id);
-    double tag = 0;
-    for (int i = 0; i < atom->nlocal; ++i)
-      if ((atom->mask[i] & groupbit) && (atom->mask[i] & other->groupbit)) tag = std::max<double>(tag, atom->tag[i]);
-    ranks_.max({&tag, 1});
-    if (tag > 0)
-      error->all(FLERR,
-                 "Fix nscd {}: atom {} is moved by fix {} (style {}) too: remove that fix or give the two "
-                 "disjoint groups",
-                 id, tagint(tag), other->id, other->style);
-  }
-}
-
 // The contact pairs come from the pair style's list: with pair_style zero it costs nothing more.
 void FixNscd::find_list()
 {
-  list_ = force->pair ? neighbor->find_list(force->pair) : nullptr;
+  const ContactList found = find_contact_list(lmp);
+  list_ = found.list;
+  list_limit_ = found.limit;
+  list_reach_ = 0;   // cutoffs may be others than in the last run
   if (!list_)
     error->all(FLERR,
-               "Fix nscd {} needs the neighbor list of a pair style: use pair_style zero CUTOFF with a cutoff of the "
-               "largest diameter plus what two grains can move in a step",
-               id);
+               "Fix nscd {} needs the neighbor list of a pair style, and pair style {} has none: use pair_style zero "
+               "CUTOFF with a cutoff of the largest diameter plus what two grains can move in a step, alone or in "
+               "hybrid/overlay with pair_coeff * * zero",
+               id, force->pair ? force->pair_style : "none");
 }
 
 void FixNscd::init()
 {
-  check_atoms();
-  check_integrators();
-  rows_every_step_ = false;
-  for (Fix *other : modify->get_fix_list())
-    if (utils::strmatch(other->style, "^ave/") || utils::strmatch(other->style, "^vector")) rows_every_step_ = true;
+  or_stop(error, id, [&] {
+    checks_.require_spheres(step_->settings().frictional());
+    checks_.require_sole_integrator();
+  });
+  checks_.tell_of_other_fixes_nscd();
+}
+
+void FixNscd::check_run()
+{
+  or_stop(error, id, [&] {
+    checks_.require_steps();
+    checks_.require_walls_repeat(step_->settings());
+    checks_.require_future_bonds_listed();
+  });
+  held_ = checks_.held_groups();
+  rows_every_step_ = checks_.rows_may_be_read();
+  excludes_ = false;
+  tell_of_exclusions();
+}
+
+// Again when atoms have come in.
+void FixNscd::tell_of_exclusions()
+{
+  if (excludes_) return;
+  atoms_told_of_ = atom->natoms;
+  const std::string excluded = checks_.exclusions(grains());
+  excludes_ = !excluded.empty();
+  if (comm->me == 0 && excludes_) error->warning(FLERR, "Fix nscd {}: {}", id, excluded);
 }
 
 // Before the first step of a scene, once.
@@ -136,6 +130,7 @@ void FixNscd::tell_doubts()
 
 void FixNscd::setup(int /*vflag*/)
 {
+  check_run();
   find_list();
   step_->begin_run(neighbor->ago == 0);
   steps_ = 0;
@@ -181,16 +176,6 @@ void FixNscd::unpack_forward_comm(int count, int first, double *from)
   for (int k = 0; k < count; ++k) homes_[first + k] = int(from[k]);
 }
 
-// LAMMPS drops grains when it builds lists, and only then.
-void FixNscd::require_all_grains()
-{
-  double here = atom->nlocal;
-  ranks_.sum({&here, 1});
-  if (here != double(atom->natoms))
-    error->all(FLERR, "Fix nscd {}: {} of {} grains left the box: close it with wall planes or boundary s or m", id,
-               bigint(atom->natoms - bigint(here)), atom->natoms);
-}
-
 nscd::Grains FixNscd::grains()
 {
   nscd::Grains g;
@@ -202,6 +187,8 @@ nscd::Grains FixNscd::grains()
   if (step_->settings().frictional() && atom->nlocal) {
     g.omega = atom->omega[0];
     g.torque = atom->torque ? atom->torque[0] : nullptr;
+  } else if (atom->nlocal && atom->torque) {
+    g.unread_torque = atom->torque[0];
   }
   g.radius = atom->radius;
   g.mass = atom->rmass;
@@ -214,7 +201,9 @@ nscd::Grains FixNscd::grains()
   g.home = homes_.empty() ? nullptr : homes_.data() + atom->nlocal;
   g.mask = atom->mask;
   g.group = groupbit;
+  g.held = held_;
   g.force_to_acceleration = force->ftm2v;
+  g.square_to_energy = force->mvv2e;
   return g;
 }
 
@@ -228,15 +217,21 @@ nscd::PairList FixNscd::pairs()
   p.cross_pairs_twice = !force->newton_pair;
   p.just_built = neighbor->ago == 0;
   if (p.just_built || list_reach_ == 0) measure_list_reach();
-  p.reach = list_reach_;
+  p.reach = std::min(list_reach_, list_limit_);
+  p.excludes = excludes_;
   return p;
 }
 
 void FixNscd::final_integrate()
 {
   if (neighbor->ago == 0 || steps_ == 0) {
-    require_all_grains();
+    or_stop(error, id, [&] { checks_.require_all_grains(); });
     find_homes();
+    or_stop(error, id, [&] {
+      checks_.require_sole_integrator();
+      checks_.require_bonds_listed(grains());
+    });
+    if (atom->natoms != atoms_told_of_) tell_of_exclusions();
   }
   or_stop(error, id, [&] { step_->advance(grains(), pairs(), update->dt); });
   totals_.add(step_->report());
@@ -253,6 +248,7 @@ void FixNscd::post_run()
     if (comm->me == 0) error->warning(FLERR, "Fix nscd {}: {}", id, remark);
 }
 
+// They cannot be made when they are read: LAMMPS reads them as they lie.
 bool FixNscd::local_rows_wanted() const { return rows_every_step_ || output->next == update->ntimestep; }
 
 void FixNscd::fill_local()
@@ -271,7 +267,10 @@ double FixNscd::compute_scalar() { return step_->report().iterations; }
 
 double FixNscd::compute_vector(int n) { return nscd::report_column(step_->report(), n); }
 
-double FixNscd::compute_array(int /*row*/, int column) { return totals_.column(column); }
+double FixNscd::compute_array(int /*row*/, int column)
+{
+  return column < nscd::totals_columns ? totals_.column(column) : 0;
+}
 
 // Called on all ranks ahead of the records; rank 0 writes their number of words, which nothing reads.
 void FixNscd::write_restart(FILE *file)

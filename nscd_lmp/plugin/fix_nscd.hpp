@@ -5,6 +5,7 @@
 #include "../core/step.hpp"
 #include "mpi_ranks.hpp"
 #include "restart.hpp"
+#include "scene_checks.hpp"
 
 #include <fix.h>
 
@@ -35,19 +36,19 @@ class FixNscd : public Fix {
   void unpack_forward_comm(int count, int first, double *from) override;
 
  private:
-  void check_atoms();
-  void check_integrators();
+  void check_run();
+  void tell_of_exclusions();
   void measure_list_reach();
   void find_list();
   void tell_doubts();
   nscd::Grains grains();
   nscd::PairList pairs();
   void find_homes();
-  void require_all_grains();
   void fill_local();
   bool local_rows_wanted() const;
 
   nscd::MpiRanks ranks_;
+  SceneChecks checks_;
   std::unique_ptr<nscd::Step> step_;
   class NeighList *list_ = nullptr;
   std::vector<int> homes_;              // (owned + ghosts) rank that owns the atom; empty on one rank
@@ -55,11 +56,15 @@ class FixNscd : public Fix {
   std::vector<double> local_values_;
   std::vector<double *> local_rows_;
   double list_reach_ = 0;
+  double list_limit_ = 0;               // as ContactList has it
+  int held_ = 0;                        // bits of the groups of fix freeze
   bool rows_every_step_ = false;
   bool doubted_ = false;
   nscd::Totals totals_;
   nscd::RestartRecords records_;
   int largest_record_ = 0;              // of all ranks
+  bool excludes_ = false;               // neigh_modify exclude leaves out pairs that could be contacts
+  bigint atoms_told_of_ = 0;
   bigint steps_ = 0;                    // of the run
 };
 

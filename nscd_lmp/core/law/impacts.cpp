@@ -66,6 +66,7 @@ void resolve_impacts(State &s, const SolvePart &solve)
 {
   s.impact_impulse.clear();
   s.friction.impact_impulse.clear();
+  s.per_approach.clear();   // of the last step's contacts, which are others
   smooth_half(s, -1);
   std::size_t closing = select_closing(s);
   for (int round = 0; round < max_rounds && sum_everywhere(s, double(closing)) > 0; ++round) {

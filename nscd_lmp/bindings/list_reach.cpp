@@ -1,0 +1,49 @@
+#include "list_reach.hpp"
+
+#include "../core/error.hpp"
+#include "../core/list_audit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nscd {
+
+double ListReach::measure(const Grains &g, const int *type, int types, Ranks *ranks) const
+{
+  std::vector<double> of_type(2 * types, 0.0);   // largest radius, and whether one moves
+  for (int i = 0; i < g.owned; ++i) {
+    double &largest = of_type[type[i] - 1], &moves = of_type[types + type[i] - 1];
+    largest = std::max(largest, g.radius[i]);
+    if (g.moves(i)) moves = 1;
+  }
+  if (ranks) ranks->max(of_type);
+  double reach = INFINITY;
+  for (int a = 0; a < types; ++a)
+    for (int b = a; b < types; ++b) {
+      const bool can_meet = of_type[a] > 0 && of_type[b] > 0 && of_type[types + a] + of_type[types + b] > 0;
+      const double cutoff = listed_.cutoff - (listed_.shorter.empty() ? 0 : listed_.shorter[a * types + b]);
+      if (can_meet) reach = std::min(reach, cutoff - of_type[a] - of_type[b]);
+    }
+  return reach;
+}
+
+bool ListReach::leaves_out_pairs(const Grains &grains, const PairList &pairs, std::int64_t timestep, double atoms,
+                                 Ranks *ranks)
+{
+  if (next_audit_ == 0) leaves_out_ = false;
+  if (timestep < next_audit_ && listed_.cutoffs_known) return leaves_out_;
+  // An audit costs what a few steps of a cloud that falls cost: few grains are looked at with every list.
+  constexpr double longest_pause = 50, atoms_a_step = 10;
+  next_audit_ = timestep + std::int64_t(std::min(longest_pause, atoms / atoms_a_step));
+  double unlisted = count_unlisted(grains, pairs, pairs.reach);
+  if (ranks) ranks->sum({&unlisted, 1});
+  if (unlisted > 0 && !listed_.cutoffs_known)
+    fail("grains are less than ", pairs.reach, " apart, and the neighbor list of pair_style ", listed_.pair_style,
+         " does not have them, though its largest cutoff and the skin are ", listed_.cutoff, ": give all pairs of ",
+         "types this cutoff, by pair_style zero, or beside other styles by `pair_style hybrid/overlay zero CUTOFF ",
+         "...` with `pair_coeff * * zero`, and exclude none by neigh_modify; fix nscd can do without");
+  leaves_out_ = leaves_out_ || unlisted > 0;
+  return leaves_out_;
+}
+
+}    // namespace nscd

@@ -1,0 +1,39 @@
+// How far the neighbor list of a LAMMPS reaches whose C interface does not tell the cutoffs of pairs of types.
+#pragma once
+
+#include "../core/ranks.hpp"
+#include "../core/views.hpp"
+
+#include <string>
+#include <vector>
+
+namespace nscd {
+
+// As nscd_lmp/inspection.py finds it.
+struct ListedPairs {
+  std::string pair_style;              // whose list is taken: of a hybrid one a sub-style
+  double cutoff = 0;                   // pair cutoff plus skin, m, of the pair of types that has the largest
+  std::vector<double> shorter{};       // (types, types), m, by which those of others are shorter; empty: all are equal
+  bool cutoffs_known = true;           // otherwise every list is audited
+};
+
+class ListReach {
+ public:
+  void set(ListedPairs listed) { listed_ = std::move(listed); }
+  const std::string &pair_style() const { return listed_.pair_style; }
+
+  // Of a new list: the surface distance up to which it has all pairs of which one moves. `type`: (owned) from 1.
+  double measure(const Grains &grains, const int *type, int types, Ranks *ranks) const;
+
+  void begin_run() { next_audit_ = 0; }
+  // Whether lists of the run leave out pairs nearer than `reach`, seen at a new one; `atoms`: of all ranks. Raises
+  // Error if they do, unless the cutoffs are known, so that it is on purpose.
+  bool leaves_out_pairs(const Grains &grains, const PairList &pairs, std::int64_t timestep, double atoms, Ranks *ranks);
+
+ private:
+  ListedPairs listed_;
+  std::int64_t next_audit_ = 0;   // timestep; 0: the run begins
+  bool leaves_out_ = false;
+};
+
+}    // namespace nscd

@@ -1,0 +1,17 @@
+// The neighbor list of the pair style that has all pairs of grains.
+#pragma once
+
+#include <lammps.h>
+#include <neigh_list.h>
+
+namespace LAMMPS_NS {
+
+struct ContactList {
+  NeighList *list = nullptr;   // none: the pair style has no list
+  double limit = 0;            // surface distance, m, beyond which it lists no pair, whatever the cutoffs
+};
+
+// Of a hybrid pair style the list that those of its sub-styles are taken from.
+ContactList find_contact_list(LAMMPS *lmp);
+
+}    // namespace LAMMPS_NS

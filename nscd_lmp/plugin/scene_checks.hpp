@@ -1,0 +1,46 @@
+// What fix nscd asks of the scene beside the contacts: round atoms, no second integrator, walls that fit the box.
+#pragma once
+
+#include "../core/settings.hpp"
+#include "../core/views.hpp"
+#include "mpi_ranks.hpp"
+
+#include <pointers.h>
+
+#include <string>
+
+namespace LAMMPS_NS {
+
+// Functions that require something raise nscd::Error, on all ranks.
+class SceneChecks : protected Pointers {
+ public:
+  SceneChecks(LAMMPS *lmp, class Fix *fix, nscd::MpiRanks &ranks) : Pointers(lmp), fix_(fix), ranks_(ranks) {}
+
+  void require_spheres(bool frictional) const;
+  // At every new list: LAMMPS drops grains then, and then only, and atoms may have come in, or into groups.
+  void require_all_grains();
+  void require_sole_integrator();
+  void require_bonds_listed(const nscd::Grains &grains);
+  // At a run's start.
+  void require_steps() const;
+  void require_walls_repeat(const nscd::Settings &settings) const;
+  void require_future_bonds_listed() const;
+
+  void tell_of_other_fixes_nscd() const;
+  // What neigh_modify exclude leaves out of what could be contacts; empty if nothing.
+  std::string exclusions(const nscd::Grains &grains);
+  // Bits of the groups that fix freeze holds.
+  int held_groups() const;
+  // Whether something may read the contacts' rows at any step.
+  bool rows_may_be_read() const;
+
+ private:
+  template <class First, class Second>
+  bool can_meet(const nscd::Grains &grains, First first, Second second);
+  bool lists_pairs(int bonds) const;
+
+  class Fix *fix_;
+  nscd::MpiRanks &ranks_;
+};
+
+}    // namespace LAMMPS_NS
