@@ -27,15 +27,8 @@ MINUTES = float(os.environ.get("NSCD_PROPERTY_MINUTES", 0))
 TESTS = 4  # that share them
 LONGEST = 120  # s that a scene may take before it is called a hang, and ends the tests with a traceback
 QUIET = {"deadline": None, "database": None, "suppress_health_check": list(HealthCheck)}
-NOT_YET = pytest.mark.xfail(strict=True, reason="one tolerance of the whole scene")
-# Kinds of faults that are known and not yet mended
-KNOWN = (
-    "overlap hidden",
-    "overlap unbounded",
-    "overlap with what moves",
-    "energy of an island",
-    "energy of an island, unsolved",
-)
+# Kinds of faults that are known and not yet mended: the energy limit of the whole scene; growth, which no velocity knows
+KNOWN = ("energy of an island", "overlap with what moves")
 
 
 def explore(check: Callable[..., None], *strategies: Any, examples: int) -> None:
@@ -130,7 +123,7 @@ def on_ranks(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("door", ["python", "script"])
-@pytest.mark.parametrize("number", [*range(6), pytest.param(6, marks=NOT_YET), 7])
+@pytest.mark.parametrize("number", range(len(random_ranks.SCENES)))
 def test_scenes_on_several_ranks_move_as_on_one(on_ranks: Path, number: int, door: str) -> None:
     one, two = (np.load(on_ranks / f"{number}.{door}.{count}.npz") for count in (1, 2))
     scene = random_ranks.SCENES[number]
