@@ -18,8 +18,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 Array = NDArray[np.float64]
+# "Lost atoms" is LAMMPS' own word for grains that were out of the box when a run began
 REMEDY = re.compile(
-    r"\b(raise|use|take|turn|start|remove|close|look|give|lower|make|another|larger|smaller|a wall plane)\b"
+    r"\b(raise|use|take|turn|start|remove|close|look|give|lower|make|another|larger|smaller|a wall plane|Lost atoms)\b"
 )
 KINDS = (
     "not a number",
