@@ -136,7 +136,7 @@ def run(scene: Scene, door: str = "python", but: tuple[str, ...] = ()) -> Record
 def _run(lmp: Any, scene: Scene, placed: random_scenes.Placed, door: str, record: Record, but: Any) -> None:
     """Take the steps."""
     record.states.append(state(lmp))
-    unsolved, left = 0.0, _true(lmp, placed).largest
+    unsolved, left = 0.0, _true(lmp, placed).ratio
     try:
         attached = harden(lmp, scene, placed, door)
         lmp.command("run 0 post no")
@@ -151,7 +151,7 @@ def _run(lmp: Any, scene: Scene, placed: random_scenes.Placed, door: str, record
             step = Step(scene, placed, force, *record.states[-2:], attached.contacts, number, bool(solved))
             now = _true(lmp, placed)
             judge(step, left, now, stats, but)
-            left = left if solved else max(left, now.largest)
+            left = left if solved else max(left, now.ratio)
     except Exception as error:
         require_remedy(error)
         record.refused = str(error)
@@ -234,16 +234,16 @@ def _judge_reported(step: Step, now: all_pairs.Overlaps, stats: Any) -> None:
 
 
 def _judge_overlap(step: Step, left: float, now: all_pairs.Overlaps) -> None:
-    """Under law gap a solved step leaves what the start or unsolved steps left, and 5e-4 of the smallest radius.
+    """Under law gap a solved step leaves what the start or unsolved steps left, and 5e-4 of a pair's smaller radius.
 
     Obstacles that `fix move` accelerates, and grains that grow, may add what is of second order, or one step's growth.
     """
     if step.scene.law != "gap" or not step.solved:
         return
     smallest = float(step.placed.grains.radius.min())
-    added = 5e-4 * smallest * (1 + 1e-6) + random_scenes.unforeseen(step.scene, step.placed)
-    if now.largest > left + added + 1e-12 * random_scenes.LARGEST:
-        text = f"{now.largest:.4g} m, allowed {left + added:.4g} ({now.where})"
+    allowed = left + 5e-4 * (1 + 1e-6) + random_scenes.unforeseen(step.scene, step.placed) / smallest
+    if now.ratio > allowed + 1e-12 * random_scenes.LARGEST / smallest:
+        text = f"{now.ratio:.4g} of the smaller radius, allowed {allowed:.4g} ({now.where})"
         raise Broken("overlap unbounded" if step.scene.still else "overlap with what moves", step.number, text)
 
 

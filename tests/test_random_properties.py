@@ -27,7 +27,7 @@ MINUTES = float(os.environ.get("NSCD_PROPERTY_MINUTES", 0))
 TESTS = 4  # that share them
 LONGEST = 120  # s that a scene may take before it is called a hang, and ends the tests with a traceback
 QUIET = {"deadline": None, "database": None, "suppress_health_check": list(HealthCheck)}
-# Kinds of faults that are known and not yet mended: the energy limit of the whole scene; growth, which no velocity knows
+# Kinds of faults that are not mended yet: the energy limit of the whole scene; growth, which no velocity knows
 KNOWN = ("energy of an island", "overlap with what moves")
 
 
