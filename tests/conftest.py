@@ -1,4 +1,4 @@
-"""Instances of LAMMPS that end with the test that asked for them."""
+"""Instances of LAMMPS that end with the test that asked for them, and a question behind each of their runs."""
 
 from __future__ import annotations
 
@@ -7,6 +7,25 @@ from typing import Any
 
 import pytest
 import scenes
+import watched_runs
+
+
+@pytest.fixture(scope="session", autouse=True)
+def every_run_is_asked() -> Iterator[None]:
+    """Compare the overlap that a run reports with that of all pairs, see `watched_runs`."""
+    end = watched_runs.install()
+    yield
+    end()
+
+
+@pytest.fixture(autouse=True)
+def asked_unless_marked(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Leave the question out in tests that are marked `overlaps_not_asked(reason)`."""
+    if request.node.get_closest_marker("overlaps_not_asked") is None:
+        yield
+        return
+    with watched_runs.unasked():
+        yield
 
 
 @pytest.fixture

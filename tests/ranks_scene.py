@@ -145,8 +145,10 @@ CASES["flawed_solver"] = lambda beds: bad(beds, "python", "solver")
 
 
 if __name__ == "__main__":
+    import watched_runs
     from mpi4py import MPI
 
+    watched_runs.install()
     names, beds, answers = sys.argv[1].split(","), Path(sys.argv[2]), Path(sys.argv[3])
     for one in names:
         left = CASES[one](beds)
