@@ -211,6 +211,7 @@ class _Door:
         self.fix = _core.ExternalFix(
             addresses, FIX_ID, pair_style, cutoff, group_bit, keywords, solver, ranks, find_homes
         )
+        self.fix.set_image_cutoff(self.inspection.communication_cutoff())
         if self.fix.crowding:
             warnings.warn(self.fix.crowding, stacklevel=3)
         self.methods = {name: getattr(lmp, name) for name in COMMAND_METHODS}
@@ -270,6 +271,7 @@ class _Door:
             self.add_fix()
         if self.remeasure:
             self.fix.set_cutoff(self.inspection.neighbor_cutoff())
+            self.fix.set_image_cutoff(self.inspection.communication_cutoff())
             self.remeasure = False
 
     def after_run(self) -> None:

@@ -74,14 +74,15 @@ class Inspection:
         and prints it only as a lower bound of the communication cutoff; that is set to 0 meanwhile.
         """
         self._command(f"write_restart {os.devnull}")
-        shown = self._communication_cutoff()
+        shown = self.communication_cutoff()
         self._command("comm_modify cutoff 0.0")
-        cutoff = self._communication_cutoff()
+        cutoff = self.communication_cutoff()
         if shown > cutoff:
             self._command(f"comm_modify cutoff {shown!r}")
         return cutoff
 
-    def _communication_cutoff(self) -> float:
+    def communication_cutoff(self) -> float:
+        """Return the distance from a rank's part of the box up to which there are images."""
         found = re.search(r"Communication cutoff = (\S+)", self.info("communication"))
         if not found:
             raise NscdError("LAMMPS did not tell its communication cutoff")

@@ -54,12 +54,17 @@ void ExternalFix::begin_run(int first_call)
   homes_.clear();
   // A list that the setup built is as old as the run; grains stay where they are until the first step.
   step_.begin_run(setting("neigh_ago") <= first_call);
+  largest_radius_ = 0;   // to be measured again
 }
 
 void ExternalFix::advance()
 {
-  const Grains g = grains();
-  step_.advance(g, pairs(g), *library_.global<double>("dt"));
+  try {
+    const Grains g = grains();
+    step_.advance(g, pairs(g), *library_.global<double>("dt"));
+  } catch (const Error &refused) {
+    fail(refused.what(), " (step ", timestep(), ")");
+  }
   record(timestep());
 }
 
@@ -165,10 +170,36 @@ PairList ExternalFix::pairs(const Grains &g)
   p.cross_pairs_twice = setting("newton_pair") == 0;
   // Builds before 2023 do not tell the list's age (-1): every list is taken as new, which weakens the check on it.
   p.just_built = setting("neigh_ago") <= 0;
-  if (p.just_built || largest_radius_ == 0)
+  if (p.just_built || largest_radius_ == 0) {
     largest_radius_ = g.owned ? *std::max_element(g.radius, g.radius + g.owned) : 0;
+    images_ = find_images();
+  }
   p.reach = cutoff_ - 2 * largest_radius_;
+  p.cutoff = cutoff_;
+  p.images = images_;
   return p;
+}
+
+// Which atoms had images on this rank when the list was built: all within the communication cutoff of its part of the
+// box. Along an axis that is not periodic there is nothing beyond the outermost parts.
+Images ExternalFix::find_images() const
+{
+  Images images;
+  const int *periodic = library_.global<int>("periodicity");
+  const double *box[] = {library_.global<double>("boxlo"), library_.global<double>("boxhi")};
+  const double *part[] = {library_.global<double>("sublo"), library_.global<double>("subhi")};
+  images.distance = std::max(cutoff_, image_cutoff_);
+  if (!ranks_ && periodic && !periodic[0] && !periodic[1] && !periodic[2]) images.distance = INFINITY;
+  const bool known = periodic && box[0] && box[1] && part[0] && part[1] && setting("triclinic") == 0;
+  if (!known) return images;
+  images.boxed = true;
+  for (int d = 0; d < 3; ++d) {
+    images.periodic[d] = periodic[d] && d < setting("dimension");
+    const bool lowest = part[0][d] <= box[0][d], highest = part[1][d] >= box[1][d];
+    images.lo[d] = lowest && !images.periodic[d] ? -INFINITY : part[0][d] - images.distance;
+    images.hi[d] = highest && !images.periodic[d] ? INFINITY : part[1][d] + images.distance;
+  }
+  return images;
 }
 
 void ExternalFix::record(std::int64_t timestep)

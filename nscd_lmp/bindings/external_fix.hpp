@@ -40,6 +40,8 @@ class ExternalFix {
   const std::vector<StatsRow> &stats() const { return stats_; }
   std::vector<std::string> take_remarks() { return step_.take_remarks(); }
   void set_cutoff(double cutoff) { cutoff_ = cutoff; }
+  // Communication cutoff, m, up to which there are images; if it is not known they reach as far as the list.
+  void set_image_cutoff(double cutoff) { image_cutoff_ = cutoff; }
 
   // What stopped the run; empty if nothing did. Reading it forgets it.
   std::exception_ptr take_failure() { return std::exchange(failure_, nullptr); }
@@ -57,12 +59,13 @@ class ExternalFix {
   void require_all_grains(int owned);
   void find_homes(const Grains &grains);
   PairList pairs(const Grains &grains);
+  Images find_images() const;
   void record(std::int64_t timestep);
   std::int64_t timestep() const;
 
   Library library_;
   std::string id_, pair_style_;
-  double cutoff_;
+  double cutoff_, image_cutoff_ = 0;
   int group_bit_;
   std::unique_ptr<PythonRanks> ranks_;   // none on one rank
   nanobind::object find_homes_;
@@ -73,6 +76,7 @@ class ExternalFix {
   std::vector<double> masses_;
   std::vector<StatsRow> stats_;
   double largest_radius_ = 0;
+  Images images_;
   std::exception_ptr failure_;
 };
 

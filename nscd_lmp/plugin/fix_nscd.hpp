@@ -38,6 +38,7 @@ class FixNscd : public Fix {
   void check_atoms();
   void check_integrators();
   void measure_list_reach();
+  void find_images();
   void find_list();
   nscd::Grains grains();
   nscd::PairList pairs();
@@ -54,6 +55,8 @@ class FixNscd : public Fix {
   std::vector<double> local_values_;
   std::vector<double *> local_rows_;
   double list_reach_ = 0;
+  std::vector<double> list_cutoffs_;   // (types + 1, types + 1) of centres
+  nscd::Images images_;
   bool rows_every_step_ = false;
   nscd::Totals totals_;
   nscd::RestartRecords records_;
