@@ -99,9 +99,10 @@ def test_obstacle_that_moves_needs_no_cutoff_beyond_the_diameter(start, door):
 
 @BOTH
 def test_obstacle_that_comes_too_fast_for_the_list_is_refused(start, door):
-    lmp = start(grains([(0, 0, 0.5), (0, 0, 4.0)], 0.5, mass=1.0), 1e-2)
+    # within a step the piston goes from one side of the grain to the other
+    lmp = start(grains([(0, 0, 0.5), (0, 0, 8.0)], 0.5, mass=1.0), 1e-2)
     shorten(lmp, 1.0, 0.25)
-    lmp.commands_list(["group piston id 2", "group rest id 1", "fix push piston move linear 0 0 -90"])
+    lmp.commands_list(["group piston id 2", "group rest id 1", "fix push piston move linear 0 0 -900"])
     harden(lmp, door, "rest", walls=[FLOOR])
     with pytest.raises(refusal(door), match=r"contacts could be missed: grains 1 and 2 are .* \(step \d\)"):
         lmp.command("run 5")

@@ -36,11 +36,11 @@ Box MissedPairs::since_listed(int atom) const
   return {since, since};
 }
 
-// Since the list was built, with both of the motion.
+// Since the list was built, on the way that the motion takes from there.
 Box MissedPairs::displacements(const State &s, int atom) const
 {
-  const Vec4 since = since_listed(atom).lo;
-  Box box;
+  Box box = since_listed(atom);
+  const Vec4 since = box.lo;
   box.include(since + motion_.one[s.owner[atom]]);
   box.include(since + motion_.other[s.owner[atom]]);
   return box;
@@ -148,12 +148,7 @@ Box MissedPairs::partners(const State &s, int atom, double margin) const
 {
   const double touch = s.spheres[atom].radius + largest_radius_ + margin;
   const Box since = since_listed(atom);
-  const auto against = [&](Box others) {
-    Box mine = displacements(s, atom);
-    mine.include(since);
-    others.include(since_);
-    return mine.less(others).wider(touch);
-  };
+  const auto against = [&](const Box &others) { return displacements(s, atom).less(others).wider(touch); };
   const int body = s.owner[atom];
   Box seen;   // in the frame, in which the others are within the pace
   for (const Vec4 &d : {Vec4{}, motion_.one[body] - frame_, motion_.other[body] - frame_}) seen.include(d);
