@@ -65,6 +65,7 @@ TEST(obstacles_cannot_meet_each_other)
   scene.x[3] += 5;
   scene.advance(step, 0.1);
   scene.v[3] = -150;
+  scene.x[3] = 0;    // where it ends the step that it starts at 15
   CHECK_ERROR(scene.advance(step, 0.1), "grains 1 and 2 are 13 apart and approach by 15");
 }
 
