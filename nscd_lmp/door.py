@@ -211,6 +211,7 @@ class _Door:
         find_homes = ghost_homes.finder(lmp, ranks) if ranks else None
         self.fix = _core.ExternalFix(addresses, FIX_ID, group_bit, keywords, solver, ranks, find_homes)
         self.fix.set_listed_pairs(*astuple(listed))
+        self.fix.set_image_cutoff(self.inspection.communication_cutoff())
         for doubt in [*filter(None, [self.fix.crowding]), *self.fix.doubts()]:
             warnings.warn(doubt, stacklevel=3)
         self.methods = {name: getattr(lmp, name) for name in COMMAND_METHODS}
@@ -284,6 +285,7 @@ class _Door:
             self.add_fix()
         if self.remeasure:
             self.fix.set_listed_pairs(*astuple(self.inspection.listed_pairs()))
+            self.fix.set_image_cutoff(self.inspection.communication_cutoff())
             self.remeasure = False
 
     def after_run(self) -> None:

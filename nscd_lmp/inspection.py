@@ -155,6 +155,10 @@ class Inspection:
         # Those of collections are written with eight digits.
         return max(cutoffs.values()) * (1 - 1e-7 * multi)
 
+    def communication_cutoff(self) -> float:
+        """Return the distance from a rank's part of the box up to which there are images; 0 where it differs by grain."""
+        return self._communication_cutoffs().get("", 0.0)
+
     def _communication_cutoffs(self) -> dict[str, float]:
         """Return the communication cutoff, or those of the collections of ``comm_modify mode multi`` by number."""
         found = re.findall(r"Communication cutoff(?: for collection (\d+))? = (\S+)", self.info("communication"))

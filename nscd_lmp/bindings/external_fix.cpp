@@ -64,9 +64,13 @@ void ExternalFix::begin_run(int first_call)
 void ExternalFix::advance(double elapsed)
 {
   require_next_step(elapsed);
-  const Grains g = grains();
-  forget_places(elapsed);
-  step_.advance(g, pairs(g), *library_.global<double>("dt"));
+  try {
+    const Grains g = grains();
+    forget_places(elapsed);
+    step_.advance(g, pairs(g), *library_.global<double>("dt"));
+  } catch (const Error &refused) {
+    fail(refused.what(), " (step ", timestep(), ")");
+  }
   last_step_ = timestep();
   record(last_step_);
 }
@@ -245,12 +249,37 @@ PairList ExternalFix::pairs(const Grains &g)
   const bool at_its_places = p.just_built || new_list_;
   if (at_its_places || list_reach_ == 0)
     list_reach_ = reach_.measure(g, library_.per_atom<int>("type"), setting("ntypes"), ranks_.get());
+  if (at_its_places) images_ = find_images();
   p.reach = list_reach_;
+  reach_.tell_cutoffs(p, library_.per_atom<int>("type"), setting("ntypes"));
+  p.images = images_;
   if (at_its_places)
     leaves_out_pairs_ = reach_.leaves_out_pairs(g, p, timestep(), library_.get_natoms(library_.handle), ranks_.get());
   p.excludes = leaves_out_pairs_;
   new_list_ = false;
   return p;
+}
+
+// Which atoms had images on this rank when the list was built: all within the communication cutoff of its part of the
+// box. Along an axis that is not periodic there is nothing beyond the outermost parts.
+Images ExternalFix::find_images() const
+{
+  Images images;
+  const int *periodic = library_.global<int>("periodicity");
+  const double *box[] = {library_.global<double>("boxlo"), library_.global<double>("boxhi")};
+  const double *part[] = {library_.global<double>("sublo"), library_.global<double>("subhi")};
+  images.distance = std::max(reach_.cutoff(), image_cutoff_);
+  if (!ranks_ && periodic && !periodic[0] && !periodic[1] && !periodic[2]) images.distance = INFINITY;
+  const bool known = periodic && box[0] && box[1] && part[0] && part[1] && setting("triclinic") == 0;
+  if (!known) return images;
+  images.boxed = true;
+  for (int d = 0; d < 3; ++d) {
+    images.periodic[d] = periodic[d] && d < setting("dimension");
+    const bool lowest = part[0][d] <= box[0][d], highest = part[1][d] >= box[1][d];
+    images.lo[d] = lowest && !images.periodic[d] ? -INFINITY : part[0][d] - images.distance;
+    images.hi[d] = highest && !images.periodic[d] ? INFINITY : part[1][d] + images.distance;
+  }
+  return images;
 }
 
 std::vector<std::string> ExternalFix::take_remarks()

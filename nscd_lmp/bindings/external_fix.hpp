@@ -46,6 +46,8 @@ class ExternalFix {
   // Before runs. `held`: bits of the groups of fix freeze; `movers`: fixes move grains that do not integrate them.
   void set_listed_pairs(ListedPairs listed) { reach_.set(std::move(listed)); }
   void set_fixes(int held, bool movers) { held_ = held, movers_ = movers; }
+  // Communication cutoff, m, up to which there are images; if it is not known they reach as far as the list.
+  void set_image_cutoff(double cutoff) { image_cutoff_ = cutoff; }
 
   // What stopped the run; empty if nothing did. Reading it forgets it.
   std::exception_ptr take_failure() { return std::exchange(failure_, nullptr); }
@@ -67,6 +69,7 @@ class ExternalFix {
   void require_all_grains(int owned);
   void find_homes(const Grains &grains);
   PairList pairs(const Grains &grains);
+  Images find_images() const;
   void record(std::int64_t timestep);
   std::int64_t timestep() const;
 
@@ -90,6 +93,8 @@ class ExternalFix {
   bool movers_ = false;
   BoxEdges last_box_{};
   std::int64_t last_step_ = 0;
+  double image_cutoff_ = 0;
+  Images images_;
   std::exception_ptr failure_;
 };
 

@@ -27,6 +27,20 @@ double ListReach::measure(const Grains &g, const int *type, int types, Ranks *ra
   return reach;
 }
 
+void ListReach::tell_cutoffs(PairList &pairs, const int *type, int types)
+{
+  pairs.cutoff = listed_.cutoff;
+  if (listed_.shorter.empty()) return;
+  const std::size_t width = types + 1;
+  cutoffs_.assign(width * width, 0);
+  for (int a = 0; a < types; ++a)
+    for (int b = 0; b < types; ++b)
+      cutoffs_[(a + 1) * width + b + 1] = listed_.cutoff - listed_.shorter[std::size_t(a) * types + b];
+  pairs.types = types + 1;
+  pairs.type = type;
+  pairs.cutoffs = cutoffs_.data();
+}
+
 bool ListReach::leaves_out_pairs(const Grains &grains, const PairList &pairs, std::int64_t timestep, double atoms,
                                  Ranks *ranks)
 {

@@ -21,9 +21,13 @@ class ListReach {
  public:
   void set(ListedPairs listed) { listed_ = std::move(listed); }
   const std::string &pair_style() const { return listed_.pair_style; }
+  double cutoff() const { return listed_.cutoff; }
 
   // Of a new list: the surface distance up to which it has all pairs of which one moves. `type`: (owned) from 1.
   double measure(const Grains &grains, const int *type, int types, Ranks *ranks) const;
+
+  // The cutoffs of centres, beside a list's reach. `type` as above, of images too; both have to outlive the list.
+  void tell_cutoffs(PairList &pairs, const int *type, int types);
 
   void begin_run() { next_audit_ = 0; }
   // Whether lists of the run leave out pairs nearer than `reach`, seen at a new one; `atoms`: of all ranks. Raises
@@ -32,6 +36,7 @@ class ListReach {
 
  private:
   ListedPairs listed_;
+  std::vector<double> cutoffs_;   // (types + 1, types + 1); LAMMPS counts types from 1
   std::int64_t next_audit_ = 0;   // timestep; 0: the run begins
   bool leaves_out_ = false;
 };

@@ -196,6 +196,7 @@ void bind_external_fix(nb::module_ &m)
           },
           "pair_style"_a, "cutoff"_a, "shorter"_a, "cutoffs_known"_a)
       .def("set_fixes", &ExternalFix::set_fixes, "held"_a, "movers"_a)
+      .def("set_image_cutoff", &ExternalFix::set_image_cutoff, "cutoff"_a)
       .def_prop_ro("failed", &ExternalFix::failed)
       .def("take_remarks", &ExternalFix::take_remarks)
       .def("raise_failure", [](ExternalFix &fix) { if (auto e = fix.take_failure()) std::rethrow_exception(e); })

@@ -38,7 +38,7 @@ void ListGuard::inspect(State &s, const PairList &pairs)
   if (!new_) return;
   refuse_full_list(pairs, s.grains.owned);
   find_owners(s);
-  listed_x_.assign(s.grains.x, s.grains.x + 3 * std::size_t(s.grains.owned));
+  listed_x_.assign(s.grains.x, s.grains.x + 3 * (std::size_t(s.grains.owned) + s.grains.ghosts));
   unknown_ = false;
 }
 
@@ -66,24 +66,11 @@ double ListGuard::farthest_moved(const State &s) const
 {
   const double *x = s.grains.x;
   double farthest2 = 0;
-  for (std::size_t i = 0; i + 2 < listed_x_.size(); i += 3) {
+  for (std::size_t i = 0; i < 3 * std::size_t(s.grains.owned); i += 3) {
     const double a = x[i] - listed_x_[i], b = x[i + 1] - listed_x_[i + 1], c = x[i + 2] - listed_x_[i + 2];
     farthest2 = std::max(farthest2, a * a + b * b + c * c);
   }
   return std::sqrt(farthest2);
-}
-
-void require_reach(const Reach &r, double speed)
-{
-  if (r.listed < 0)
-    fail("contacts could be missed: pair cutoff plus neighbor skin are ", -r.listed,
-         " less than the largest diameter: raise the cutoff of the pair style to the largest diameter plus 2 dt v of ",
-         "the fastest grain (", 2 * r.ahead, " now)");
-  if (!r.is_enough())
-    fail("contacts could be missed: two grains can be ", 2 * (r.moved + r.ahead),
-         " nearer than when the neighbor list was built (moved ", r.moved, " each, and dt v = ", r.ahead, " with v = ",
-         speed, "), but it holds pairs only up to ", r.listed, " apart: raise the cutoff of the pair style by ",
-         "2 dt v of the fastest grain, or use a larger neighbor skin or a smaller timestep");
 }
 
 }    // namespace nscd

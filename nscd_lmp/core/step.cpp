@@ -104,10 +104,12 @@ void Step::prepare(const PairList &pairs)
   gather_images(state_, prediction_, look_ahead_, {kick2, speed2});
   listed_ = -unlisted;
   report_.unread_torque = torque > 0;
+  moved_ = moved;
   const double speed = std::sqrt(speed2);
   state_.round_off = 1e-14 * speed;
   report_.largest_move_ratio = state_.dt * speed / -smallest;
-  require_reach({listed_, moved, longest_move(speed)}, speed);
+  missed_.begin(pairs, listed_);
+  require_list(speed);
 }
 
 // Biases and start impulses of the contacts from `first` on; `again`: those before have theirs.

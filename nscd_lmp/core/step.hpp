@@ -7,6 +7,7 @@
 #include "law.hpp"
 #include "left_places.hpp"
 #include "list_guard.hpp"
+#include "missed_pairs.hpp"
 #include "remarks.hpp"
 #include "solver.hpp"
 #include "state.hpp"
@@ -16,6 +17,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <set>
 #include <span>
 
 namespace nscd {
@@ -75,8 +77,8 @@ class Step {
   // The impulses that the next step starts from, to be kept between runs.
   WarmStart &memory() { return memory_; }
 
-  // True if the next step needs a fresh neighbor list to be sure of every contact.
-  bool wants_rebuild() const { return wants_rebuild_; }
+  // After a step: true if the next one needs a fresh neighbor list to be sure of every contact. Collective.
+  bool wants_rebuild();
 
  private:
   // How far around q_k contacts are sought, m, for a grain of this speed.
@@ -84,6 +86,10 @@ class Step {
   // Runs `local`, on several ranks so that all fail if one does.
   void together(const std::function<void()> &local);
   void prepare(const PairList &pairs);
+  void require_list(double speed);
+  void watch_unlisted();
+  [[noreturn]] void refuse_missed(double cutoff) const;
+  void refuse_unless_all_known() const;
   void start_contacts(std::size_t first, bool again);
   void begin_rounds();
   void solve();
@@ -132,8 +138,9 @@ class Step {
   bool jammed_ = false;            // the last solve that was given up
   bool shared_among_threads_ = false;   // the contacts that are being solved
   double free_norm_ = 0;           // of the step's contacts, m/s
-  double listed_ = 0;              // as Reach has it
-  bool wants_rebuild_ = false;
+  MissedPairs missed_{list_};
+  std::set<std::pair<int, int>> unlisted_;   // pairs that were found beyond the list after a solve of this step
+  double listed_ = 0, moved_ = 0;  // as Reach has them
   const std::string crowding_;
 };
 

@@ -51,7 +51,6 @@ NSCD_HOT void Step::tally_contacts()
 void Step::write_back()
 {
   const Grains &g = state_.grains;
-  double fastest2 = 0;
   for (int i = 0; i < g.owned; ++i) {
     const Body &b = state_.bodies[i];
     if (b[3] == 0) continue;
@@ -64,13 +63,8 @@ void Step::write_back()
       x[d] = moved[d];
       v[d] = b[d];
     }
-    fastest2 = std::max(fastest2, b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
   }
   if (state_.friction.model != Model::frictionless) write_back_spins(state_);
-  double reduced[] = {fastest2, list_.farthest_moved(state_)};
-  if (halo_) halo_->max(reduced);
-  const double next = longest_move(std::sqrt(reduced[0]) + state_.smooth_kick);
-  wants_rebuild_ = !Reach{listed_, reduced[1], next}.is_enough();
 }
 
 }    // namespace nscd

@@ -85,6 +85,7 @@ bool Step::promote()
 {
   const std::size_t before = state_.contacts.size();
   std::size_t more = 0;
+  watch_unlisted();
   together([&] {
     watch_farther(state_, *pairs_);
     if (law_->looks_ahead()) more = promote_near(state_);

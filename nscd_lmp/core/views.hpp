@@ -32,6 +32,14 @@ struct Grains {
   bool moves(int i) const { return (mask[i] & group) && !(mask[i] & held); }
 };
 
+// Which atoms were among a rank's arrays when the neighbor list was built, beside its own. The defaults are safe.
+struct Images {
+  double distance = 0;                   // m from every owned atom: all within; 0: as far as pairs are listed
+  bool boxed = false;                    // also all within the box below; where it is not slanted
+  double lo[3] = {}, hi[3] = {};         // m
+  bool periodic[3] = {true, true, true};   // along an axis
+};
+
 // Half neighbor list in LAMMPS' layout; the top three bits of a neighbor index are flags.
 struct PairList {
   int count = 0;
@@ -41,7 +49,12 @@ struct PairList {
   bool cross_pairs_twice = false;        // newton off: a pair with an image is listed from both sides
   double reach = 0;                      // surface distance up to which all pairs were listed when it was built
   bool just_built = false;               // at the positions that this step starts from
-  bool excludes = false;                 // pairs are left out of the list on purpose
+  double cutoff = 0;                     // distance of centres up to which pairs were listed; 0: by `reach`
+  int types = 0;                         // where that depends on the types of the two:
+  const int *type = nullptr;             // (owned + ghosts) 0 to types - 1
+  const double *cutoffs = nullptr;       // (types, types)
+  bool excludes = false;                 // pairs within it are left out on purpose
+  Images images{};
 };
 constexpr int neighbor_index_mask = 0x1FFFFFFF;
 

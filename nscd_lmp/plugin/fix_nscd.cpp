@@ -36,6 +36,17 @@ auto or_stop(Error *error, const char *id, Body body)
   }
 }
 
+// What the core refuses of a step, by its number.
+template <class Body>
+auto in_step(bigint step, Body body)
+{
+  try {
+    return body();
+  } catch (const nscd::Error &refused) {
+    nscd::fail(refused.what(), " (step ", step, ")");
+  }
+}
+
 }    // namespace
 
 FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks_(world), checks_(lmp, this, ranks_)
@@ -133,6 +144,7 @@ void FixNscd::setup(int /*vflag*/)
   check_run();
   find_list();
   step_->begin_run(neighbor->ago == 0);
+  if (neighbor->ago == 0) list_cutoffs_.clear();   // to be measured again: settings may have changed
   steps_ = 0;
   tell_doubts();
   nscd_progress.begin_run(update->beginstep, update->endstep, update->ntimestep);
@@ -142,19 +154,45 @@ void FixNscd::setup(int /*vflag*/)
 }
 
 // Surface distance up to which all pairs were listed at the last build: over the type pairs, cutoff + skin less
-// the largest radii of the two types.
+// the largest radii of the two types. Two types of obstacles need no cutoff.
 void FixNscd::measure_list_reach()
 {
-  const int types = atom->ntypes;
-  std::vector<double> largest(types + 1, 0);
-  for (int i = 0; i < atom->nlocal; ++i)
-    largest[atom->type[i]] = std::max(largest[atom->type[i]], atom->radius[i]);
-  ranks_.max(largest);  // the largest of a type may be on another rank
+  const int types = atom->ntypes + 1;   // from 1
+  std::vector<double> found(2 * types, 0);
+  const auto largest = found.begin(), moves = largest + types;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const int type = atom->type[i];
+    largest[type] = std::max(largest[type], atom->radius[i]);
+    if (atom->mask[i] & groupbit) moves[type] = 1;
+  }
+  ranks_.max(found);  // the largest of a type may be on another rank
   list_reach_ = INFINITY;
-  for (int a = 1; a <= types; ++a)
-    for (int b = a; b <= types; ++b)
-      if (largest[a] > 0 && largest[b] > 0)
-        list_reach_ = std::min(list_reach_, std::sqrt(neighbor->cutneighsq[a][b]) - largest[a] - largest[b]);
+  list_cutoffs_.assign(std::size_t(types) * types, 0);
+  for (int a = 1; a < types; ++a)
+    for (int b = 1; b < types; ++b) {
+      const double cutoff = list_cutoffs_[a * types + b] = std::sqrt(neighbor->cutneighsq[a][b]);
+      if (largest[a] > 0 && largest[b] > 0 && moves[a] + moves[b] > 0)
+        list_reach_ = std::min(list_reach_, cutoff - largest[a] - largest[b]);
+    }
+}
+
+// Which atoms had images on this rank when the list was built: all within the communication cutoff of its part of the
+// box. Along an axis that is not periodic there is nothing beyond the outermost parts.
+void FixNscd::find_images()
+{
+  images_ = {};
+  const bool by_type = comm->mode != Comm::SINGLE;   // images of some types reach less far
+  if (!by_type) images_.distance = comm->get_comm_cutoff();
+  if (comm->nprocs == 1 && !domain->xperiodic && !domain->yperiodic && !domain->zperiodic)
+    images_.distance = INFINITY;
+  if (domain->triclinic || by_type) return;
+  images_.boxed = true;
+  for (int d = 0; d < 3; ++d) {
+    images_.periodic[d] = domain->periodicity[d] && d < domain->dimension;
+    const bool lowest = domain->sublo[d] <= domain->boxlo[d], highest = domain->subhi[d] >= domain->boxhi[d];
+    images_.lo[d] = lowest && !images_.periodic[d] ? -INFINITY : domain->sublo[d] - images_.distance;
+    images_.hi[d] = highest && !images_.periodic[d] ? INFINITY : domain->subhi[d] + images_.distance;
+  }
 }
 
 // The rank of every atom, from its owner by LAMMPS' communication of ghosts.
@@ -216,9 +254,16 @@ nscd::PairList FixNscd::pairs()
   p.first = list_->firstneigh;
   p.cross_pairs_twice = !force->newton_pair;
   p.just_built = neighbor->ago == 0;
-  if (p.just_built || list_reach_ == 0) measure_list_reach();
+  if (p.just_built || list_cutoffs_.empty()) {
+    measure_list_reach();
+    find_images();
+  }
   p.reach = std::min(list_reach_, list_limit_);
   p.excludes = excludes_;
+  p.types = atom->ntypes + 1;
+  p.type = atom->type;
+  p.cutoffs = list_cutoffs_.data();
+  p.images = images_;
   return p;
 }
 
@@ -233,7 +278,7 @@ void FixNscd::final_integrate()
     });
     if (atom->natoms != atoms_told_of_) tell_of_exclusions();
   }
-  or_stop(error, id, [&] { step_->advance(grains(), pairs(), update->dt); });
+  or_stop(error, id, [&] { in_step(update->ntimestep, [&] { step_->advance(grains(), pairs(), update->dt); }); });
   totals_.add(step_->report());
   const double time = update->atime + double(update->ntimestep - update->atimestep) * update->dt;
   nscd_progress.add(step_->report(), update->ntimestep, time);

@@ -39,6 +39,7 @@ class FixNscd : public Fix {
   void check_run();
   void tell_of_exclusions();
   void measure_list_reach();
+  void find_images();
   void find_list();
   void tell_doubts();
   nscd::Grains grains();
@@ -58,6 +59,8 @@ class FixNscd : public Fix {
   double list_reach_ = 0;
   double list_limit_ = 0;               // as ContactList has it
   int held_ = 0;                        // bits of the groups of fix freeze
+  std::vector<double> list_cutoffs_;   // (types + 1, types + 1) of centres
+  nscd::Images images_;
   bool rows_every_step_ = false;
   bool doubted_ = false;
   nscd::Totals totals_;

@@ -98,6 +98,7 @@ nscd::PairList Scene::pairs()
   p.first = first_.data();
   p.cross_pairs_twice = !newton;
   p.reach = reach;
+  p.images.distance = images;
   p.just_built = just_built;
   return p;
 }

@@ -4,6 +4,7 @@
 #include "core/step.hpp"
 
 #include <array>
+#include <cmath>
 #include <random>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ struct Scene {
   int owned = 0;
   bool newton = true;
   double reach = 1e9;     // the list below has all pairs
+  double images = INFINITY;   // and all atoms are here
   bool just_built = true;
 
   // Returns the grain's index; images come after all grains.

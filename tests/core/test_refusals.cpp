@@ -96,7 +96,8 @@ TEST(overlaps_beyond_a_radius_are_refused)
 
 TEST(contacts_that_could_be_missed_are_refused)
 {
-  refuses("", [](Scene &s) { s.reach = 0.001; }, "contacts could be missed");
+  const auto short_list = [](Scene &s) { s.reach = 0.001; s.v[3] = -400; };
+  refuses("", short_list, "contacts could be missed: grains 1 and 2 are 1 apart and approach by ");
   refuses("", [](Scene &s) { s.reach = -1; }, "1 less than the largest diameter: raise the cutoff");
 }
 
