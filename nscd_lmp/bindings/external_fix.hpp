@@ -55,7 +55,9 @@ class ExternalFix {
   void require_atoms() const;
   void require_last() const;
   void find_list();
+  Grains arrays();
   Grains grains();
+  void look_at_box();
   void require_all_grains(int owned);
   void find_homes(const Grains &grains);
   PairList pairs(const Grains &grains);
@@ -73,6 +75,7 @@ class ExternalFix {
   std::vector<int> atoms_, counts_, homes_;
   std::vector<int *> first_;
   std::vector<double> masses_;
+  Box box_;
   std::vector<StatsRow> stats_;
   double largest_radius_ = 0;
   std::exception_ptr failure_;

@@ -48,6 +48,7 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
 void Step::begin_run(bool list_just_built)
 {
   report_ = {};
+  drifts_.begin_run();
   if (list_just_built) list_.expect_new_list();
 }
 
@@ -78,8 +79,8 @@ void Step::together(const std::function<void()> &local)
 void Step::prepare(const PairList &pairs)
 {
   Largest largest;
-  double reduced[5];
-  auto &[kick2, speed2, moved, unlisted, smallest] = reduced;
+  double reduced[6];
+  auto &[kick2, speed2, moved, unlisted, smallest, grown] = reduced;
   together([&] {
     if (state_.dimension == 2) require_planar(state_);
     list_.inspect(state_, pairs);
@@ -90,6 +91,7 @@ void Step::prepare(const PairList &pairs)
     if (settings_.warmstart) memory_.follow_grains(*halo_, state_.friction.model);
   }
   together([&] { largest = gather_owned(state_, prediction_, look_ahead_); });
+  grown = drifts_.look(state_, list_.is_new());
   kick2 = largest.kick2, speed2 = largest.speed2, moved = list_.farthest_moved(state_), unlisted = -pairs.reach;
   smallest = -largest.smallest_radius;
   if (halo_) {
@@ -97,11 +99,13 @@ void Step::prepare(const PairList &pairs)
     halo_->max(reduced);
   }
   gather_images(state_, prediction_, look_ahead_, {kick2, speed2});
+  drifts_.settle(state_, grown > 0, list_.is_new());
+  drifts_.place(state_, state_.dt * prediction_, look_ahead_);
   listed_ = -unlisted;
-  const double speed = std::sqrt(speed2);
+  const double speed = std::sqrt(speed2) + state_.drift.fastest;
   state_.round_off = 1e-14 * speed;
   report_.largest_move_ratio = state_.dt * speed / -smallest;
-  require_reach({listed_, moved, longest_move(speed)}, speed);
+  require_reach({listed_, moved + 0.5 * drifts_.neared(), longest_move(speed)}, speed);
 }
 
 // Biases and start impulses of the contacts from `first` on; `again`: those before have theirs.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "detection.hpp"
+#include "drift.hpp"
 #include "energy_limit.hpp"
 #include "halo.hpp"
 #include "law.hpp"
@@ -52,6 +53,9 @@ class Step {
 
   // Energy and unconverged steps count from here. `list_just_built`: the first step starts from its positions.
   void begin_run(bool list_just_built);
+
+  // What radii and box are as the run starts: without it the first step does not know what has changed since. Local.
+  void see(const Grains &grains) { drifts_.see(grains); }
 
   // One step of length dt (s). Raises Error and leaves the arrays as they were if the input is bad, a contact
   // can be missed, or the step does not converge under `unconverged error`.
@@ -110,6 +114,7 @@ class Step {
   const std::unique_ptr<Halo> halo_;   // none on one rank
   const std::unique_ptr<Team> team_;   // none on one thread
   ListGuard list_;
+  Drifts drifts_;
   const PairList *pairs_ = nullptr;    // of the step
   WarmStart memory_;
   EnergyLimit energy_limit_;

@@ -1,4 +1,5 @@
 // The end of a step: what it has done, and back into the arrays.
+#include "drifted.hpp"
 #include "hot.hpp"
 #include "slides.hpp"
 #include "spins.hpp"
@@ -29,7 +30,10 @@ NSCD_HOT void Step::tally_contacts()
     work += c.impulse * (info.speed_before + normal_velocity(c, s.bodies.data()));
     const Sphere &a = s.spheres[info.atom_i];
     Vec4 separation = a.centre + s.displacement[c.i];
-    if (info.atom_j >= 0) {
+    if (!s.drift.of.empty()) {
+      info.gap = gap_at(s, {info.atom_i, info.atom_j}, in_arrays);
+      work -= c.impulse * normal_drift(s, k);   // which speed_before has
+    } else if (info.atom_j >= 0) {
       const Sphere &b = s.spheres[info.atom_j];
       separation -= b.centre + s.displacement[c.j];
       info.gap = std::sqrt(dot(separation, separation)) - a.radius - b.radius;
@@ -56,7 +60,7 @@ void Step::write_back()
     const Body &b = state_.bodies[i];
     if (b[3] == 0) continue;
     double *x = g.x + 3 * std::size_t(i), *v = g.v + 3 * std::size_t(i), *f = g.f + 3 * std::size_t(i);
-    const Vec4 moved = state_.spheres[i].centre + state_.displacement[i];
+    const Vec4 moved = moved_in_arrays(state_, i);
     const double per_force = state_.dt * g.force_to_acceleration * b[3];
     for (int d = 0; d < 3; ++d) {
       const double free = v[d] + f[d] * per_force;
@@ -67,9 +71,11 @@ void Step::write_back()
     fastest2 = std::max(fastest2, b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
   }
   if (state_.friction.model != Model::frictionless) write_back_spins(state_);
-  double reduced[] = {fastest2, list_.farthest_moved(state_)};
+  drifts_.leave(state_);
+  const double neared = 0.5 * drifts_.neared() + state_.dt * state_.drift.fastest;
+  double reduced[] = {fastest2, list_.farthest_moved(state_) + neared};
   if (halo_) halo_->max(reduced);
-  const double next = longest_move(std::sqrt(reduced[0]) + state_.smooth_kick);
+  const double next = longest_move(std::sqrt(reduced[0]) + state_.smooth_kick + state_.drift.fastest);
   wants_rebuild_ = !Reach{listed_, reduced[1], next}.is_enough();
 }
 

@@ -5,6 +5,17 @@
 
 namespace nscd {
 
+// The cell whose periodic images atoms have.
+struct Box {
+  double edges[6] = {};      // m: a = (xx, 0, 0), b = (xy, yy, 0), c = (xz, yz, zz), in the order xx yy zz yz xz xy
+  double low[3] = {};        // its corner
+  bool periodic[3] = {};
+  // How its edges change from here on, m/s, where that is known beforehand; otherwise it is measured.
+  bool rate_known = false;
+  double rate[6] = {};
+  bool changes_now = false;  // with a known rate: at the end of this step too
+};
+
 // All atoms of one rank: indices 0..owned-1 are integrated here, owned..owned+ghosts-1 are images, periodic ones or of
 // atoms that other ranks own.
 // Units are any consistent set (LAMMPS `units si`: m, kg, s, N).
@@ -24,6 +35,7 @@ struct Grains {
   int group = 1;                   // an atom moves if mask & group; the others are obstacles of infinite mass
   int later = 0;                   // obstacles of these groups move later in the step, all others have already moved
   double force_to_acceleration = 1;  // LAMMPS' ftm2v
+  const Box *box = nullptr;          // null: it stands still
 };
 
 // Half neighbor list in LAMMPS' layout; the top three bits of a neighbor index are flags.

@@ -138,6 +138,7 @@ void FixNscd::setup(int /*vflag*/)
 {
   find_list();
   step_->begin_run(neighbor->ago == 0);
+  step_->see(grains());
   steps_ = 0;
   tell_doubts();
   nscd_progress.begin_run(update->beginstep, update->endstep, update->ntimestep);
@@ -191,6 +192,20 @@ void FixNscd::require_all_grains()
                bigint(atom->natoms - bigint(here)), atom->natoms);
 }
 
+// A box that fix deform moves without moving the grains has a rate that LAMMPS knows ahead of the first change.
+void FixNscd::look_at_box()
+{
+  std::copy_n(domain->h, 6, box_.edges);
+  std::copy_n(domain->boxlo, 3, box_.low);
+  std::copy_n(domain->periodicity, 3, box_.periodic);
+  box_.rate_known = domain->deform_flag && domain->deform_vremap;
+  if (!box_.rate_known) return;
+  std::copy_n(domain->h_rate, 6, box_.rate);
+  box_.changes_now = false;
+  for (const Fix *fix : modify->get_fix_by_style("^deform"))
+    if (fix->nevery > 0 && update->ntimestep % fix->nevery == 0) box_.changes_now = true;
+}
+
 nscd::Grains FixNscd::grains()
 {
   nscd::Grains g;
@@ -215,6 +230,8 @@ nscd::Grains FixNscd::grains()
   g.mask = atom->mask;
   g.group = groupbit;
   g.force_to_acceleration = force->ftm2v;
+  look_at_box();
+  g.box = &box_;
   return g;
 }
 

@@ -41,6 +41,7 @@ class FixNscd : public Fix {
   void find_list();
   void tell_doubts();
   nscd::Grains grains();
+  void look_at_box();
   nscd::PairList pairs();
   void find_homes();
   void require_all_grains();
@@ -54,6 +55,7 @@ class FixNscd : public Fix {
   std::vector<double> masses_;          // per owned atom, where masses are per type
   std::vector<double> local_values_;
   std::vector<double *> local_rows_;
+  nscd::Box box_;
   double list_reach_ = 0;
   bool rows_every_step_ = false;
   bool doubted_ = false;
