@@ -30,6 +30,7 @@ ADDRESSES = (
     "lammps_extract_atom",
     "lammps_extract_global",
     "lammps_extract_setting",
+    "lammps_extract_box",
     "lammps_get_thermo",
     "lammps_get_natoms",
     "lammps_find_pair_neighlist",

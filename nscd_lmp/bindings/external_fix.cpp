@@ -59,6 +59,7 @@ void ExternalFix::begin_run(int first_call)
   // A list that the setup built is as old as the run; grains stay where they are until the first step.
   new_list_ = setting("neigh_ago") <= first_call;
   step_.begin_run(new_list_);
+  if (first_call == in_setup) step_.see(arrays());
 }
 
 void ExternalFix::advance(double elapsed)
@@ -187,7 +188,19 @@ std::vector<std::string> ExternalFix::doubts() const
   return nscd::doubts(g, library_.get_natoms(library_.handle), ranks_.get());
 }
 
-Grains ExternalFix::grains()
+// Its rate is not told.
+void ExternalFix::look_at_box()
+{
+  double high[3], xy = 0, yz = 0, xz = 0;
+  int periodic[3] = {}, changes = 0;
+  library_.extract_box(library_.handle, box_.low, high, &xy, &yz, &xz, periodic, &changes);
+  const double edges[6] = {high[0] - box_.low[0], high[1] - box_.low[1], high[2] - box_.low[2], yz, xz, xy};
+  std::copy_n(edges, 6, box_.edges);
+  std::copy_n(periodic, 3, box_.periodic);
+}
+
+// As LAMMPS has them.
+Grains ExternalFix::arrays()
 {
   Grains g;
   g.owned = setting("nlocal");
@@ -215,6 +228,16 @@ Grains ExternalFix::grains()
   g.group = group_bit_;
   g.held = held_;
   g.watched = !movers_;
+  g.force_to_acceleration = *library_.global<double>("ftm2v");
+  g.square_to_energy = *library_.global<double>("mvv2e");
+  look_at_box();
+  g.box = &box_;
+  return g;
+}
+
+Grains ExternalFix::grains()
+{
+  Grains g = arrays();
   // LAMMPS drops grains when it builds lists. Whether the list is new is the same on all ranks.
   const bool new_list = !ranks_ || setting("neigh_ago") <= 0 || homes_.empty();
   if (new_list) {
@@ -225,8 +248,6 @@ Grains ExternalFix::grains()
     if (new_list) find_homes(g);
     g.home = homes_.data();
   }
-  g.force_to_acceleration = *library_.global<double>("ftm2v");
-  g.square_to_energy = *library_.global<double>("mvv2e");
   return g;
 }
 

@@ -65,7 +65,9 @@ class ExternalFix {
   void require_atoms() const;
   void require_last() const;
   void find_list();
+  Grains arrays();
   Grains grains();
+  void look_at_box();
   void require_all_grains(int owned);
   void find_homes(const Grains &grains);
   PairList pairs(const Grains &grains);
@@ -83,6 +85,7 @@ class ExternalFix {
   std::vector<int> atoms_, counts_, homes_;
   std::vector<int *> first_;
   std::vector<double> masses_;
+  Box box_;
   std::vector<StatsRow> stats_;
   std::vector<double> contact_rows_;
   ListReach reach_;

@@ -12,6 +12,7 @@ struct Library {
   void *(*extract_atom)(void *, const char *) = nullptr;
   void *(*extract_global)(void *, const char *) = nullptr;
   int (*extract_setting)(void *, const char *) = nullptr;
+  void (*extract_box)(void *, double *, double *, double *, double *, double *, int *, int *) = nullptr;
   double (*get_thermo)(void *, const char *) = nullptr;
   double (*get_natoms)(void *) = nullptr;
   int (*find_pair_neighlist)(void *, const char *, int, int, int) = nullptr;

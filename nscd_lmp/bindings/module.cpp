@@ -98,6 +98,7 @@ nscd::Library make_library(const nb::dict &addresses)
   load("lammps_extract_global", library.extract_global);
   load("lammps_extract_setting", library.extract_setting);
   load("lammps_get_thermo", library.get_thermo);
+  load("lammps_extract_box", library.extract_box);
   load("lammps_get_natoms", library.get_natoms);
   load("lammps_find_pair_neighlist", library.find_pair_neighlist);
   load("lammps_neighlist_num_elements", library.neighlist_num_elements);

@@ -1,5 +1,6 @@
 #include "approach_bound.hpp"
 
+#include "drift_of.hpp"
 #include "hot.hpp"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ NSCD_HOT void bound_approach(State &s, std::size_t first)
     const ContactInfo &info = s.infos[k];
     const double deepest = *s.settings.overlap * info.radius;
     const double deeper = std::max(deepest + info.gap, least_share * deepest);
-    s.per_approach[k] = 1 / (deeper / s.dt - s.contacts[k].bias);
+    s.per_approach[k] = 1 / (deeper / s.dt - (s.contacts[k].bias - normal_drift(s, k)));
   }
 }
 

@@ -46,7 +46,7 @@ struct Watched {
 // What a contact needs outside the sweep.
 struct ContactInfo {
   double gap = 0;           // m, negative when overlapping; at detection, then at the end of the step
-  double speed_before = 0;  // n.(v_i - v_j) at the start of the step, m/s
+  double speed_before = 0;  // n.(v_i - v_j), drift included, at the start of the step, m/s
   std::uint64_t key = 0;    // identifies the contact across steps
   std::int32_t atom_i = 0, atom_j = 0;  // as in Candidate
   double radius = 0;        // of the smaller grain, m

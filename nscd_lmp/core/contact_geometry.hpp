@@ -1,6 +1,7 @@
 // From a pair of atoms, or an atom and a wall, to a contact: gap, normal, bodies, W_nn.
 #pragma once
 
+#include "drift_of.hpp"
 #include "error.hpp"
 #include "hot.hpp"
 #include "state.hpp"
@@ -72,6 +73,7 @@ NSCD_INLINE void place_contact(State &s, std::size_t k, const Candidate &c)
   if (gap < -smaller) refuse_overlap(s, c, gap);
   const double w = s.bodies[i][3] + s.bodies[j][3];
   s.contacts[k] = {normal, 0.0, 1 / w, 0.0, i, j};
+  if (!s.drift.of.empty()) before += drift_of(s, c, normal);
   s.infos[k] = {gap, dot(normal, before), contact_key(s, c), c.atom_i, c.atom_j,
                 smaller, std::max(s.kicks[i], s.kicks[j]), 0.0};
 }

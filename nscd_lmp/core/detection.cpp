@@ -1,6 +1,7 @@
 #include "detection.hpp"
 
 #include "contact_geometry.hpp"
+#include "drifted.hpp"
 
 namespace nscd {
 
@@ -94,6 +95,7 @@ NSCD_HOT void watch_unforeseen(State &s)
 {
   const Foresight foresight{s.dt};
   const std::size_t watched = s.near.size(), count = s.touching.size();
+  const bool drifts = !s.drift.of.empty();
   std::size_t kept = 0, doubted = watched;
   for (std::size_t k = 0; k < count; ++k) {
     const Candidate c = s.touching[k];
@@ -101,7 +103,9 @@ NSCD_HOT void watch_unforeseen(State &s)
     const Vec4 separation = a.centre - b.centre;
     const double distance = std::sqrt(dot(separation, separation)), gap = distance - a.radius - b.radius;
     const int i = s.owner[c.atom_i], j = s.owner[c.atom_j];
-    const double rate = dot(separation, s.bodies[i] - s.bodies[j]) / distance;
+    Vec4 parting = s.bodies[i] - s.bodies[j];
+    if (drifts) parting += drift_of(s, c, separation / distance);
+    const double rate = dot(separation, parting) / distance;
     const bool meets = foresight.meets(gap, a.reach + b.reach, rate, std::max(s.kicks[i], s.kicks[j]));
     make_room(s.near, doubted);
     s.touching[kept] = c;
@@ -115,14 +119,21 @@ NSCD_HOT void watch_unforeseen(State &s)
   s.unforeseen = doubted - watched;
 }
 
+// How far the box carries a grain, which it does not carry away from others, m.
+double carried_to_wall(const State &s, int i)
+{
+  return s.drift.of.empty() ? 0 : s.dt * length(without_fourth(s.drift.of[i]));
+}
+
 void sort_wall(State &s, int wall)
 {
   const Height height(s.settings.walls[wall]);
   for (int i = 0; i < s.grains.owned; ++i) {
     const double gap = height.of(s.spheres[i].centre) - s.spheres[i].radius;
-    if (gap > s.watch || s.bodies[i][3] == 0) continue;
+    const double carried = carried_to_wall(s, i);
+    if (gap > s.watch + carried || s.bodies[i][3] == 0) continue;
     const Candidate found{i, -1 - wall};
-    if (gap > s.spheres[i].reach) s.near.push_back({found, gap});
+    if (gap > s.spheres[i].reach + carried) s.near.push_back({found, gap});
     else s.touching.push_back(found);
   }
 }
@@ -167,7 +178,8 @@ void measure_moves(State &s)
 NSCD_INLINE bool may_meet(const State &s, const Watched &near)
 {
   const double other = is_wall(near.pair) ? 0 : s.moved[s.owner[near.pair.atom_j]];
-  return near.gap <= 1.0000001 * (s.moved[s.owner[near.pair.atom_i]] + other);
+  const double carried = is_wall(near.pair) ? carried_to_wall(s, near.pair.atom_i) : 0;
+  return near.gap <= 1.0000001 * (s.moved[s.owner[near.pair.atom_i]] + other + s.drift.approach + carried);
 }
 
 // Of the two that move farthest, m.
@@ -178,7 +190,7 @@ double sum_of_longest_moves(const State &s)
     second = std::max(second, std::min(moved, longest));
     longest = std::max(longest, moved);
   }
-  return longest + second;
+  return longest + second + s.drift.approach;
 }
 
 // Those that filter_pairs left out, by the same expression, and now takes in.
@@ -202,7 +214,9 @@ void watch_wall_beyond(State &s, int wall, double watched)
   const Height height(s.settings.walls[wall]);
   for (int i = 0; i < s.grains.owned; ++i) {
     const double gap = height.of(s.spheres[i].centre) - s.spheres[i].radius;
-    if (gap > watched && gap <= s.watch && s.bodies[i][3] > 0) s.near.push_back({{i, -1 - wall}, gap});
+    const double carried = carried_to_wall(s, i);
+    const bool is_beyond = gap > watched + carried && gap <= s.watch + carried;
+    if (is_beyond && s.bodies[i][3] > 0) s.near.push_back({{i, -1 - wall}, gap});
   }
 }
 
@@ -220,25 +234,19 @@ double left_of_contact(const State &s, const Candidate &c)
   return left_of_overlap(s, kick, smaller_radius(s, c));
 }
 
-// The gap once grains have moved by s.displacement.
-double gap_displaced(const State &s, const Candidate &c)
-{
-  const Sphere &a = s.spheres[c.atom_i];
-  const Vec4 centre = a.centre + s.displacement[s.owner[c.atom_i]];
-  if (is_wall(c)) return Height(s.settings.walls[wall_index(c)]).of(centre) - a.radius;
-  const Sphere &b = s.spheres[c.atom_j];
-  const Vec4 separation = centre - b.centre - s.displacement[s.owner[c.atom_j]];
-  return std::sqrt(dot(separation, separation)) - a.radius - b.radius;
-}
-
 // gap + dt v_n^{k+1}, which a contact keeps from being negative.
 double gap_constrained(const State &s, const Watched &near)
 {
   const auto [i, j] = near.pair;
   const Body of_i = s.bodies[s.owner[i]];
-  if (is_wall(near.pair)) return near.gap + s.dt * dot(Height(s.settings.walls[wall_index(near.pair)]).normal, of_i);
+  if (is_wall(near.pair)) {
+    const Vec4 normal = Height(s.settings.walls[wall_index(near.pair)]).normal;
+    return near.gap + s.dt * dot(normal, of_i + drift_of(s, near.pair, normal));
+  }
   const Vec4 separation = s.spheres[i].centre - s.spheres[j].centre;
-  return near.gap + s.dt * dot(separation, of_i - s.bodies[s.owner[j]]) / std::sqrt(dot(separation, separation));
+  const double distance = std::sqrt(dot(separation, separation));
+  const Vec4 parting = of_i - s.bodies[s.owner[j]] + drift_of(s, near.pair, separation / distance);
+  return near.gap + s.dt * dot(separation, parting) / distance;
 }
 
 NSCD_INLINE void note_overlap(State &s, const Candidate &c, double overlap)
@@ -279,14 +287,14 @@ std::size_t promote_near(State &state)
   std::size_t kept = 0;
   for (const Watched near : state.near) {
     if (may_meet(state, near)) {
-      const double displaced = gap_displaced(state, near.pair);
+      const double displaced = gap_at(state, near.pair, at_end);
       if (std::min(displaced, gap_constrained(state, near)) < -left_of_contact(state, near.pair)) {
         resize_closely(state.contacts, state.contacts.size() + 1);
         resize_closely(state.infos, state.infos.size() + 1);
         place_contact(state, state.contacts.size() - 1, near.pair);
         continue;
       }
-      note_overlap(state, near.pair, -displaced);
+      note_overlap(state, near.pair, -gap_at(state, near.pair, in_arrays));
     }
     state.near[kept++] = near;
   }
@@ -298,7 +306,7 @@ void look_at_near(State &state)
 {
   state.watched_overlap = {};
   for (const Watched &near : state.near)
-    if (may_meet(state, near)) note_overlap(state, near.pair, -gap_displaced(state, near.pair));
+    if (may_meet(state, near)) note_overlap(state, near.pair, -gap_at(state, near.pair, in_arrays));
 }
 
 }    // namespace nscd

@@ -1,6 +1,7 @@
 #include "energy_limit.hpp"
 
 #include "across_ranks.hpp"
+#include "drift_of.hpp"
 #include "slides.hpp"
 
 #include <algorithm>
@@ -13,11 +14,12 @@ namespace {
 // A grain of the contact.
 int grain_of(const State &s, const Contact &c) { return s.bodies[c.i][3] > 0 ? c.i : c.j; }
 
+// Of what there is but the contacts' own drift.
 void clear_biases(State &s, std::size_t count)
 {
-  for (std::size_t k = 0; k < count; ++k) s.contacts[k].bias = 0;
+  for (std::size_t k = 0; k < count; ++k) s.contacts[k].bias = normal_drift(s, k);
   with_friction(s.friction.model, [&]<class M>(M) {
-    for (std::size_t k = 0; k < count; ++k) set_bias(s.friction.slides<M>()[k], typename M::Tangent{});
+    for (std::size_t k = 0; k < count; ++k) set_bias(s.friction.slides<M>()[k], tangential_drift<M>(s, k));
   });
 }
 
@@ -90,7 +92,7 @@ void EnergyLimit::find_islands(const State &s, std::size_t count)
 }
 
 // Half the sum of p (u- + u+), J, of every island; u- with the velocities of `before`, or with those at the start of the
-// step.
+// step. Both with the contacts' drift, since what drifts may do work.
 void EnergyLimit::find_work(const State &s, std::size_t count, const Motion *before, std::vector<double> &work)
 {
   work.assign(islands_.count(), 0);
@@ -101,8 +103,12 @@ void EnergyLimit::find_work(const State &s, std::size_t count, const Motion *bef
       using Velocity = Split<typename M::Tangent>;
       const Velocity first = before ? velocity<M>(c, before->bodies.data(), before->spins.data())
                                     : Velocity{s.infos[k].speed_before, slip_at_start<M>(s, k)};
-      work[islands_.of(grain_of(s, c))] += 0.5 * (c.impulse * (first.n + after.n) +
-                                                  inner(s.friction.slides<M>()[k].impulse, first.t + after.t));
+      double twice = c.impulse * (first.n + after.n) + inner(s.friction.slides<M>()[k].impulse, first.t + after.t);
+      if (!s.drift.of.empty()) {
+        twice += (before ? 2 : 1) * c.impulse * normal_drift(s, k);   // speed_before has it
+        twice += 2 * inner(s.friction.slides<M>()[k].impulse, tangential_drift<M>(s, k));
+      }
+      work[islands_.of(grain_of(s, c))] += 0.5 * twice;
     }
   });
   if (s.halo) work[0] = s.halo->sum(work[0]);

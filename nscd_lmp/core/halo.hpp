@@ -56,6 +56,8 @@ class Halo {
   void plan(State &state);
   // At the start of a step: how the grains move that are copies here.
   void share_motion(State &state);
+  // And where they are.
+  void share_places(State &state);
   // With new contacts: which grains are shared, and in what proportions.
   void share_contacts(State &state);
   // Local. Which contacts touch them, if contacts have changed places since.

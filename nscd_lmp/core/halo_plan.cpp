@@ -107,6 +107,16 @@ void Halo::share_motion(State &s)
        });
 }
 
+void Halo::share_places(State &s)
+{
+  s.copies.place.resize(s.copies.count);
+  move(&Peer::owned, &Peer::copies, 3,
+       [&](int body, double *to) { std::copy_n(s.grains.x + 3 * std::size_t(body), 3, to); },
+       [&](int body, const double *from) {
+         s.copies.place[body - s.grains.owned] = Vec4{from[0], from[1], from[2], 0};
+       });
+}
+
 // Contacts that touch a grain, here and on the other ranks, decide its shares.
 void Halo::find_shares(State &s)
 {

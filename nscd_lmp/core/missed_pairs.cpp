@@ -30,16 +30,16 @@ double MissedPairs::images() const
   return range_.images.distance > 0 ? range_.images.distance : listed_ + 2 * largest_radius_;
 }
 
-Box MissedPairs::since_listed(int atom) const
+Bounds MissedPairs::since_listed(int atom) const
 {
   const Vec4 since = motion_.from[atom] - list_.listed_at(atom);
   return {since, since};
 }
 
 // Since the list was built, on the way that the motion takes from there.
-Box MissedPairs::displacements(const State &s, int atom) const
+Bounds MissedPairs::displacements(const State &s, int atom) const
 {
-  Box box = since_listed(atom);
+  Bounds box = since_listed(atom);
   const Vec4 since = box.lo;
   box.include(since + motion_.one[s.owner[atom]]);
   box.include(since + motion_.other[s.owner[atom]]);
@@ -52,13 +52,13 @@ double MissedPairs::spread(const State &s)
   since_ = moving_ = all_ = {};
   double largest = 0;
   for (int a = 0; a < int(s.spheres.size()); ++a) {
-    const Box box = displacements(s, a);
+    const Bounds box = displacements(s, a);
     since_.include(since_listed(a));
     all_.include(box);
     largest = std::max(largest, s.spheres[a].radius);
     if (s.bodies[s.owner[a]][3] > 0) moving_.include(box);
   }
-  Box boxes[] = {since_, moving_, all_};
+  Bounds boxes[] = {since_, moving_, all_};
   unite(s.halo, boxes);
   since_ = boxes[0], moving_ = boxes[1], all_ = boxes[2];
   largest_radius_ = s.halo ? s.halo->max(largest) : largest;
@@ -144,26 +144,26 @@ NSCD_HOT void MissedPairs::search(const State &s, double margin)
 }
 
 // Where slower grains were that the atom can meet, from where it was when the list was built.
-Box MissedPairs::partners(const State &s, int atom, double margin) const
+Bounds MissedPairs::partners(const State &s, int atom, double margin) const
 {
   const double touch = s.spheres[atom].radius + largest_radius_ + margin;
-  const Box since = since_listed(atom);
-  const auto against = [&](const Box &others) { return displacements(s, atom).less(others).wider(touch); };
+  const Bounds since = since_listed(atom);
+  const auto against = [&](const Bounds &others) { return displacements(s, atom).less(others).wider(touch); };
   const int body = s.owner[atom];
-  Box seen;   // in the frame, in which the others are within the pace
+  Bounds seen;   // in the frame, in which the others are within the pace
   for (const Vec4 &d : {Vec4{}, motion_.one[body] - frame_, motion_.other[body] - frame_}) seen.include(d);
-  const Box earlier = since.less(since_);
-  const Box by_pace = Box{seen.lo + earlier.lo, seen.hi + earlier.hi}.wider(touch + (1 + 4 * same_pace) * pace_[body]);
-  const Box near = against(s.bodies[body][3] > 0 ? all_ : moving_).common(by_pace);
+  const Bounds earlier = since.less(since_);
+  const Bounds by_pace = Bounds{seen.lo + earlier.lo, seen.hi + earlier.hi}.wider(touch + (1 + 4 * same_pace) * pace_[body]);
+  const Bounds near = against(s.bodies[body][3] > 0 ? all_ : moving_).common(by_pace);
   if (all_known(atom, near) || !has_profile()) return near;
-  return near.common(against(profile_.around(list_.listed_at(atom), near.farthest(Box{{}, {}}))));
+  return near.common(against(profile_.around(list_.listed_at(atom), near.farthest(Bounds{{}, {}}))));
 }
 
 // Whether all atoms from there are here.
-bool MissedPairs::all_known(int atom, const Box &partners) const
+bool MissedPairs::all_known(int atom, const Bounds &partners) const
 {
   const Images &known = range_.images;
-  if (partners.farthest(Box{{}, {}}) <= images() * (1 + 1e-12)) return true;
+  if (partners.farthest(Bounds{{}, {}}) <= images() * (1 + 1e-12)) return true;
   if (!known.boxed) return false;
   const Vec4 at = list_.listed_at(atom);
   for (int d = 0; d < 3; ++d)
@@ -176,9 +176,9 @@ std::optional<Beyond> MissedPairs::farthest_beyond(const State &s, double margin
 {
   std::optional<Beyond> found;
   for (int i = 0; i < s.grains.owned; ++i) {
-    const Box around = partners(s, i, margin);
+    const Bounds around = partners(s, i, margin);
     if (all_known(i, around)) continue;
-    double distance = range_.images.boxed ? 0 : around.farthest(Box{{}, {}});
+    double distance = range_.images.boxed ? 0 : around.farthest(Bounds{{}, {}});
     for (int d = 0; d < 3; ++d) distance = std::max({distance, -around.lo[d], around.hi[d]});
     if (!found || distance > found->distance) found = Beyond{i, distance};
   }

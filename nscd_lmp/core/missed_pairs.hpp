@@ -55,8 +55,8 @@ class MissedPairs {
   bool excludes() const { return range_.excludes; }
 
  private:
-  Box since_listed(int atom) const;
-  Box displacements(const State &state, int atom) const;
+  Bounds since_listed(int atom) const;
+  Bounds displacements(const State &state, int atom) const;
   double spread(const State &state);
   void measure_paces(const State &state);
   bool is_ours(const State &state, int i, int j) const;
@@ -64,16 +64,16 @@ class MissedPairs {
   bool has_profile() const { return range_.images.boxed; }
   void examine(const State &state, int a, int b, double margin);
   void search(const State &state, double margin);
-  Box partners(const State &state, int atom, double margin) const;
-  bool all_known(int atom, const Box &partners) const;
+  Bounds partners(const State &state, int atom, double margin) const;
+  bool all_known(int atom, const Bounds &partners) const;
   std::optional<Beyond> farthest_beyond(const State &state, double margin) const;
 
   const ListGuard &list_;
   PairList range_;
   double listed_ = 0, largest_radius_ = 0;
   Motion motion_;
-  Box since_;                     // of displacements since the list was built
-  Box moving_, all_;              // with those of the motion, of moving grains and of all
+  Bounds since_;                     // of displacements since the list was built
+  Bounds moving_, all_;              // with those of the motion, of moving grains and of all
   Vec4 frame_{};                  // mean displacement of the motion, m
   std::vector<double> pace_;      // (bodies) how far the motion gets in that frame, m
   Profile profile_;

@@ -1,5 +1,6 @@
 #include "report.hpp"
 
+#include "drifted.hpp"
 #include "slides.hpp"
 
 #include <sstream>
@@ -38,9 +39,8 @@ void fill_contact_rows(const State &s, double *row)
   for (std::size_t k = 0; k < s.contacts.size(); ++k, row += columns) {
     const Contact &c = s.contacts[k];
     const ContactInfo &info = s.infos[k];
-    const Sphere &a = s.spheres[info.atom_i];
-    const Vec4 centre = a.centre + s.displacement[c.i];
-    const Vec4 point = centre - c.normal * (a.radius + 0.5 * info.gap);
+    const Sphere a = in_arrays(s, info.atom_i);
+    const Vec4 point = a.centre - c.normal * (a.radius + 0.5 * info.gap);
     row[0] = s.grains.tag[info.atom_i];
     row[1] = info.atom_j >= 0 ? s.grains.tag[info.atom_j] : info.atom_j;
     for (int d = 0; d < 3; ++d) {

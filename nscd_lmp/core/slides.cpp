@@ -1,6 +1,7 @@
 #include "slides.hpp"
 
 #include "contact_geometry.hpp"
+#include "drift_of.hpp"
 #include "hot.hpp"
 
 #include <algorithm>
@@ -61,8 +62,10 @@ void set_tangential_bias(State &s, std::size_t first, double e_t)
 {
   with_friction(s.friction.model, [&]<class M>(M) {
     auto &slides = s.friction.slides<M>();
-    for (std::size_t k = first; k < slides.size(); ++k)
-      set_bias(slides[k], e_t > 0 ? slip_at_start<M>(s, k) * e_t : typename M::Tangent{});
+    for (std::size_t k = first; k < slides.size(); ++k) {
+      const auto before = e_t > 0 ? slip_at_start<M>(s, k) * e_t : typename M::Tangent{};
+      set_bias(slides[k], s.drift.of.empty() ? before : before + tangential_drift<M>(s, k) * (1 + e_t));
+    }
   });
 }
 

@@ -15,7 +15,7 @@ Model choose_model(const Settings &settings, int dimension);
 // Slides for the contacts from `first` on: coefficient of friction, no impulse, no bias.
 void place_slides(State &state, std::size_t first);
 
-// Biases e_t u_t of the contacts from `first` on, u_t at the start of the step.
+// Biases e_t u_t of the contacts from `first` on, u_t at the start of the step, and what drifts.
 void set_tangential_bias(State &state, std::size_t first, double e_t);
 
 // Keeps the velocities of the contacts [first, last), biases included, with the bodies as they are, as those without

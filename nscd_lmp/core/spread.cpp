@@ -4,21 +4,21 @@
 
 namespace nscd {
 
-double Box::farthest(const Box &other) const
+double Bounds::farthest(const Bounds &other) const
 {
   const Vec4 ahead = hi - other.lo, behind = other.hi - lo, most = ahead > behind ? ahead : behind;
   return most[0] >= 0 ? std::sqrt(dot(most, most)) : 0;   // no box is from +inf to -inf
 }
 
-void unite(Halo *halo, std::span<Box> boxes)
+void unite(Halo *halo, std::span<Bounds> boxes)
 {
   if (!halo) return;
   std::vector<double> ends;
-  for (const Box &box : boxes)
+  for (const Bounds &box : boxes)
     for (int d = 0; d < 3; ++d) ends.insert(ends.end(), {box.hi[d], -box.lo[d]});
   halo->max(ends);
   const double *end = ends.data();
-  for (Box &box : boxes)
+  for (Bounds &box : boxes)
     for (int d = 0; d < 3; ++d, end += 2) box.hi[d] = end[0], box.lo[d] = -end[1];
 }
 
@@ -29,11 +29,11 @@ int Profile::slice_of(double place, int axis) const
 }
 
 // Beyond the outermost grains of an axis along which the scene is periodic there may be images of any.
-Box Profile::between(double from, double to, int axis) const
+Bounds Profile::between(double from, double to, int axis) const
 {
   const bool anywhere = periodic_[axis] && (from < extent_.lo[axis] || to > extent_.hi[axis]);
   const int first = anywhere ? 0 : slice_of(from, axis), last = anywhere ? slices - 1 : slice_of(to, axis);
-  Box box;
+  Bounds box;
   for (int k = first; k <= last; ++k) box.include(boxes_[axis * slices + k]);
   return box;
 }
@@ -46,7 +46,7 @@ double Profile::farthest(double reach) const
     const double lo = extent_.lo[axis], width = (extent_.hi[axis] - lo) / slices;
     double most = 0;
     for (int k = 0; k < slices; ++k) {
-      const Box near = between(lo + k * width - reach, lo + (k + 1) * width + reach, axis);
+      const Bounds near = between(lo + k * width - reach, lo + (k + 1) * width + reach, axis);
       most = std::max(most, boxes_[axis * slices + k].farthest(near));
     }
     least = std::min(least, most);
@@ -55,9 +55,9 @@ double Profile::farthest(double reach) const
 }
 
 // In the slices of every axis at once.
-Box Profile::around(const Vec4 &centre, double reach) const
+Bounds Profile::around(const Vec4 &centre, double reach) const
 {
-  Box found{-Box{}.lo, -Box{}.hi};
+  Bounds found{-Bounds{}.lo, -Bounds{}.hi};
   for (int axis = 0; axis < 3; ++axis)
     found = found.common(between(centre[axis] - reach, centre[axis] + reach, axis));
   return found;

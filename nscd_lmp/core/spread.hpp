@@ -9,7 +9,7 @@
 namespace nscd {
 
 // The smallest box that some displacements lie in, m.
-struct Box {
+struct Bounds {
   Vec4 lo{INFINITY, INFINITY, INFINITY, 0}, hi{-INFINITY, -INFINITY, -INFINITY, 0};
 
   void include(const Vec4 &d)
@@ -17,24 +17,24 @@ struct Box {
     lo = d < lo ? d : lo;
     hi = d > hi ? d : hi;
   }
-  void include(const Box &other)
+  void include(const Bounds &other)
   {
     lo = other.lo < lo ? other.lo : lo;
     hi = other.hi > hi ? other.hi : hi;
   }
   // Of what is in both; what may be in this box less what may be in the other; as far around.
-  Box common(const Box &other) const
+  Bounds common(const Bounds &other) const
   {
     return {other.lo > lo ? other.lo : lo, other.hi < hi ? other.hi : hi};
   }
-  Box less(const Box &other) const { return {lo - other.hi, hi - other.lo}; }
-  Box wider(double by) const { return {lo - Vec4{by, by, by, 0}, hi + Vec4{by, by, by, 0}}; }
+  Bounds less(const Bounds &other) const { return {lo - other.hi, hi - other.lo}; }
+  Bounds wider(double by) const { return {lo - Vec4{by, by, by, 0}, hi + Vec4{by, by, by, 0}}; }
   // Between one of this box and one of the other, at most; 0 if there is none in one of them.
-  double farthest(const Box &other) const;
+  double farthest(const Bounds &other) const;
 };
 
 // Of all ranks' boxes, the box of all. Collective.
-void unite(Halo *halo, std::span<Box> boxes);
+void unite(Halo *halo, std::span<Bounds> boxes);
 
 // Along each axis, the box of the displacements of all grains that are in the same slice. For orthogonal boxes.
 class Profile {
@@ -47,16 +47,16 @@ class Profile {
   double farthest(double reach) const;
 
   // Of grains within `reach` of the centre, those of other ranks and images included.
-  Box around(const Vec4 &centre, double reach) const;
+  Bounds around(const Vec4 &centre, double reach) const;
 
  private:
   static constexpr int slices = 64;
   int slice_of(double place, int axis) const;
-  Box between(double from, double to, int axis) const;
+  Bounds between(double from, double to, int axis) const;
 
-  Box extent_;
+  Bounds extent_;
   bool periodic_[3] = {};
-  std::vector<Box> boxes_;    // (3 axes, slices)
+  std::vector<Bounds> boxes_;    // (3 axes, slices)
 };
 
 template <class Place, class BoxOf>
@@ -69,7 +69,7 @@ void Profile::gather(Halo *halo, int owned, const bool (&periodic)[3], Place pla
   boxes_.assign(3 * slices, {});
   for (int i = 0; i < owned; ++i) {
     const Vec4 at = place(i);
-    const Box of = box(i);
+    const Bounds of = box(i);
     for (int axis = 0; axis < 3; ++axis) boxes_[axis * slices + slice_of(at[axis], axis)].include(of);
   }
   unite(halo, boxes_);

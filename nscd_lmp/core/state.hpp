@@ -3,6 +3,7 @@
 
 #include "storage.hpp"
 #include "contact.hpp"
+#include "drift.hpp"
 #include "friction.hpp"
 #include "halo.hpp"
 #include "hot.hpp"
@@ -58,6 +59,7 @@ struct Copies {
   int count = 0;
   AlignedVector<Vec4> start{}, kick{};             // v_k and dt f / m, m/s
   AlignedVector<Vec4> start_spin{}, spin_kick{};   // the same of surface velocities, with friction
+  AlignedVector<Vec4> place{};                     // q_k, m, where a box moves
 };
 
 struct State {
@@ -81,6 +83,7 @@ struct State {
   std::vector<double> impact_impulse{};  // beside contacts, N s, of impacts resolved ahead of them; or empty
 
   Friction friction{};
+  Drift drift{};
   Slabs slabs{1};                        // of threads
 
   std::vector<Candidate> found{};        // listed pairs that are near enough to watch, the first found_count

@@ -49,6 +49,7 @@ void Step::begin_run(bool list_just_built)
 {
   report_ = {};
   left_.forget();
+  drifts_.begin_run();
   if (list_just_built) list_.expect_new_list();
 }
 
@@ -80,8 +81,8 @@ void Step::together(const std::function<void()> &local)
 void Step::prepare(const PairList &pairs)
 {
   Largest largest;
-  double reduced[6];
-  auto &[kick2, speed2, moved, unlisted, smallest, torque] = reduced;
+  double reduced[7];
+  auto &[kick2, speed2, moved, unlisted, smallest, torque, grown] = reduced;
   hold_still(state_.grains);
   together([&] {
     if (state_.dimension == 2) require_planar(state_);
@@ -94,6 +95,7 @@ void Step::prepare(const PairList &pairs)
     if (settings_.warmstart) memory_.follow_grains(*halo_, state_.friction.model);
   }
   together([&] { largest = gather_owned(state_, prediction_, look_ahead_); });
+  grown = drifts_.look(state_, list_.is_new());
   kick2 = largest.kick2, speed2 = largest.speed2, moved = list_.farthest_moved(state_), unlisted = -pairs.reach;
   smallest = -largest.smallest_radius;
   torque = !remarks_.tell_of_torque() && has_unread_torque(state_.grains);
@@ -102,10 +104,12 @@ void Step::prepare(const PairList &pairs)
     halo_->max(reduced);
   }
   gather_images(state_, prediction_, look_ahead_, {kick2, speed2});
+  drifts_.settle(state_, grown > 0, list_.is_new());
+  drifts_.place(state_, state_.dt * prediction_, look_ahead_);
   listed_ = -unlisted;
   report_.unread_torque = torque > 0;
-  moved_ = moved;
-  const double speed = std::sqrt(speed2);
+  moved_ = moved + 0.5 * drifts_.neared();
+  const double speed = std::sqrt(speed2) + state_.drift.fastest;
   state_.round_off = 1e-14 * speed;
   report_.largest_move_ratio = state_.dt * speed / -smallest;
   missed_.begin(pairs, listed_);

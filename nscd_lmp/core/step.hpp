@@ -2,6 +2,7 @@
 #pragma once
 
 #include "detection.hpp"
+#include "drift.hpp"
 #include "energy_limit.hpp"
 #include "halo.hpp"
 #include "law.hpp"
@@ -57,6 +58,9 @@ class Step {
   // Energy and unconverged steps count from here. `list_just_built`: the first step starts from its positions.
   void begin_run(bool list_just_built);
 
+  // What radii and box are as the run starts: without it the first step does not know what has changed since. Local.
+  void see(const Grains &grains) { drifts_.see(grains); }
+
   // One step of length dt (s). Raises Error and leaves the arrays as they were if the input is bad, a contact
   // can be missed, or the step does not converge under `unconverged error`.
   const StepReport &advance(const Grains &grains, const PairList &pairs, double dt);
@@ -90,6 +94,7 @@ class Step {
   void watch_unlisted();
   [[noreturn]] void refuse_missed(double cutoff) const;
   void refuse_unless_all_known() const;
+  void refuse_drifting(double ahead) const;
   void start_contacts(std::size_t first, bool again);
   void begin_rounds();
   void solve();
@@ -121,6 +126,7 @@ class Step {
   const std::unique_ptr<Halo> halo_;   // none on one rank
   const std::unique_ptr<Team> team_;   // none on one thread
   ListGuard list_;
+  Drifts drifts_;
   const PairList *pairs_ = nullptr;    // of the step
   LeftPlaces left_;
   WarmStart memory_;

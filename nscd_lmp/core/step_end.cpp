@@ -1,4 +1,5 @@
 // The end of a step: what it has done, and back into the arrays.
+#include "drifted.hpp"
 #include "hot.hpp"
 #include "slides.hpp"
 #include "spins.hpp"
@@ -29,7 +30,10 @@ NSCD_HOT void Step::tally_contacts()
     work += c.impulse * (info.speed_before + normal_velocity(c, s.bodies.data()));
     const Sphere &a = s.spheres[info.atom_i];
     Vec4 separation = a.centre + s.displacement[c.i];
-    if (info.atom_j >= 0) {
+    if (!s.drift.of.empty()) {
+      info.gap = gap_at(s, {info.atom_i, info.atom_j}, in_arrays);
+      work -= c.impulse * normal_drift(s, k);   // which speed_before has
+    } else if (info.atom_j >= 0) {
       const Sphere &b = s.spheres[info.atom_j];
       separation -= b.centre + s.displacement[c.j];
       info.gap = std::sqrt(dot(separation, separation)) - a.radius - b.radius;
@@ -55,7 +59,7 @@ void Step::write_back()
     const Body &b = state_.bodies[i];
     if (b[3] == 0) continue;
     double *x = g.x + 3 * std::size_t(i), *v = g.v + 3 * std::size_t(i), *f = g.f + 3 * std::size_t(i);
-    const Vec4 moved = state_.spheres[i].centre + state_.displacement[i];
+    const Vec4 moved = moved_in_arrays(state_, i);
     const double per_force = state_.dt * g.force_to_acceleration * b[3];
     for (int d = 0; d < 3; ++d) {
       const double free = v[d] + f[d] * per_force;
@@ -65,6 +69,7 @@ void Step::write_back()
     }
   }
   if (state_.friction.model != Model::frictionless) write_back_spins(state_);
+  drifts_.leave(state_);
 }
 
 }    // namespace nscd

@@ -77,6 +77,16 @@ void Step::refuse_unless_all_known() const
        "of a rank's part of it: use comm_modify cutoff ", rounded_up(distance), ", or a smaller timestep");
 }
 
+// The closer looks know how grains move, not what boxes and radii do beside it. `ahead` as Reach has it.
+void Step::refuse_drifting(double ahead) const
+{
+  if (state_.drift.of.empty()) return;
+  fail("contacts could be missed: in a box that moves, or of grains that grow, two can be ", 2 * (moved_ + ahead),
+       " nearer at the end of this step than when the neighbor list was built, and it holds pairs up to ", listed_,
+       " apart: raise the cutoff of the pair style to ", rounded_up(2 * (largest_radius(state_) + moved_ + ahead)),
+       ", or use a smaller timestep");
+}
+
 // Ahead of the solve: pairs that meet if contacts change nothing.
 void Step::require_list(double speed)
 {
@@ -87,6 +97,7 @@ void Step::require_list(double speed)
          "raise the cutoff of the pair style to ", rounded_up(2 * (largest_radius(state_) + ahead)), ", that diameter ",
          "and 2 dt v of the fastest grain");
   if (Reach{listed_, moved_, ahead}.is_enough()) return;
+  refuse_drifting(ahead);
   free_motion(missed_.motion(), state_, prediction_, look_ahead_);
   if (!missed_.find(state_, 0)) return;
   const double cutoff = cutoff_to_type(state_, missed_);
@@ -100,9 +111,10 @@ void Step::require_list(double speed)
 void Step::watch_unlisted()
 {
   if (look_ahead_ == 0) return;
-  double farthest = farthest_solved(state_);
+  double farthest = farthest_solved(state_) + state_.dt * state_.drift.fastest;
   if (halo_) farthest = halo_->max(farthest);
   if (Reach{listed_, moved_, farthest}.is_enough()) return;
+  refuse_drifting(farthest);
   solved_motion(missed_.motion(), state_);
   if (!missed_.find(state_, 0)) return;
   const double cutoff = cutoff_to_type(state_, missed_);
@@ -117,7 +129,8 @@ void Step::watch_unlisted()
 // Forces can change by as much as they do to velocities in a step.
 bool Step::wants_rebuild()
 {
-  double reduced[] = {0, list_.farthest_moved(state_)};
+  const double drifts = state_.dt * state_.drift.fastest;
+  double reduced[] = {0, list_.farthest_moved(state_) + 0.5 * drifts_.neared() + drifts};
   auto &[farthest, moved] = reduced;
   for (int i = 0; i < state_.grains.owned; ++i) {
     const Body &b = state_.bodies[i];
@@ -125,7 +138,8 @@ bool Step::wants_rebuild()
     farthest = std::max(farthest, longest_move(b[3] > 0 ? speed + state_.smooth_kick : speed));
   }
   if (halo_) halo_->max(reduced);
-  if (Reach{listed_, moved, farthest}.is_enough()) return false;
+  if (Reach{listed_, moved, farthest + drifts}.is_enough()) return false;
+  if (drifts > 0) return true;
   next_motion(missed_.motion(), state_, look_ahead_ + prediction_);
   return missed_.find(state_, 2 * longest_move(state_.smooth_kick));
 }

@@ -5,6 +5,17 @@
 
 namespace nscd {
 
+// The cell whose periodic images atoms have.
+struct Box {
+  double edges[6] = {};      // m: a = (xx, 0, 0), b = (xy, yy, 0), c = (xz, yz, zz), in the order xx yy zz yz xz xy
+  double low[3] = {};        // its corner
+  bool periodic[3] = {};
+  // How its edges change from here on, m/s, where that is known beforehand; otherwise it is measured.
+  bool rate_known = false;
+  double rate[6] = {};
+  bool changes_now = false;  // with a known rate: at the end of this step too
+};
+
 // All atoms of one rank: indices 0..owned-1 are integrated here, owned..owned+ghosts-1 are images, periodic ones or of
 // atoms that other ranks own.
 // Units are any consistent set (LAMMPS `units si`: m, kg, s, N).
@@ -28,6 +39,7 @@ struct Grains {
   bool watched = false;            // nothing else may move grains between two steps, unless Step::forget_places is told
   double force_to_acceleration = 1;  // LAMMPS' ftm2v
   double square_to_energy = 1;       // LAMMPS' mvv2e: mass times velocity squared in units of energy
+  const Box *box = nullptr;          // null: it stands still
 
   bool moves(int i) const { return (mask[i] & group) && !(mask[i] & held); }
 };

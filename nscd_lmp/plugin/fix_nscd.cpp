@@ -145,6 +145,7 @@ void FixNscd::setup(int /*vflag*/)
   find_list();
   step_->begin_run(neighbor->ago == 0);
   if (neighbor->ago == 0) list_cutoffs_.clear();   // to be measured again: settings may have changed
+  step_->see(grains());
   steps_ = 0;
   tell_doubts();
   nscd_progress.begin_run(update->beginstep, update->endstep, update->ntimestep);
@@ -214,6 +215,20 @@ void FixNscd::unpack_forward_comm(int count, int first, double *from)
   for (int k = 0; k < count; ++k) homes_[first + k] = int(from[k]);
 }
 
+// A box that fix deform moves without moving the grains has a rate that LAMMPS knows ahead of the first change.
+void FixNscd::look_at_box()
+{
+  std::copy_n(domain->h, 6, box_.edges);
+  std::copy_n(domain->boxlo, 3, box_.low);
+  std::copy_n(domain->periodicity, 3, box_.periodic);
+  box_.rate_known = domain->deform_flag && domain->deform_vremap;
+  if (!box_.rate_known) return;
+  std::copy_n(domain->h_rate, 6, box_.rate);
+  box_.changes_now = false;
+  for (const Fix *fix : modify->get_fix_by_style("^deform"))
+    if (fix->nevery > 0 && update->ntimestep % fix->nevery == 0) box_.changes_now = true;
+}
+
 nscd::Grains FixNscd::grains()
 {
   nscd::Grains g;
@@ -242,6 +257,8 @@ nscd::Grains FixNscd::grains()
   g.held = held_;
   g.force_to_acceleration = force->ftm2v;
   g.square_to_energy = force->mvv2e;
+  look_at_box();
+  g.box = &box_;
   return g;
 }
 

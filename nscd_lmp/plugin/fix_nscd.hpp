@@ -43,6 +43,7 @@ class FixNscd : public Fix {
   void find_list();
   void tell_doubts();
   nscd::Grains grains();
+  void look_at_box();
   nscd::PairList pairs();
   void find_homes();
   void fill_local();
@@ -56,6 +57,7 @@ class FixNscd : public Fix {
   std::vector<double> masses_;          // per owned atom, where masses are per type
   std::vector<double> local_values_;
   std::vector<double *> local_rows_;
+  nscd::Box box_;
   double list_reach_ = 0;
   double list_limit_ = 0;               // as ContactList has it
   int held_ = 0;                        // bits of the groups of fix freeze

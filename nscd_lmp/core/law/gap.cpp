@@ -23,6 +23,7 @@
 // in one direction, and if all have changed the solver's own constraint holds.
 //
 // Fails: an impact starts from where the grain is, up to dt v before the surface.
+#include "../drift_of.hpp"
 #include "../law.hpp"
 #include "../hot.hpp"
 
@@ -48,7 +49,7 @@ class Gap final : public Law {
   void displace(State &s) override;
 
  private:
-  double rate(const Contact &c) const;
+  double rate(const State &s, std::size_t k) const;
   bool is_open(const State &s, std::size_t k, double rate) const;
   bool open_contact(const State &s, std::uint32_t k);
   void open_contacts(const State &s);
@@ -65,13 +66,17 @@ void Gap::set_bias(State &s, std::size_t first)
   for (std::size_t k = first; k < s.contacts.size(); ++k) {
     const ContactInfo &info = s.infos[k];
     const double overlap = std::max(0.0, -info.gap - tolerated * info.radius);
-    const double cap = recovery_cap * info.kick + tolerance(s, worth(info));
-    s.contacts[k].bias = info.gap > 0 ? info.gap * rate : -std::min(overlap * back, cap);
+    const double cap = recovery_cap * info.kick + tolerance(s, worth(info)) + sudden_approach(s, k);
+    s.contacts[k].bias = (info.gap > 0 ? info.gap * rate : -std::min(overlap * back, cap)) + normal_drift(s, k);
   }
 }
 
 // Rate at which the contact's gap changes as its bodies move now, m/s.
-double Gap::rate(const Contact &c) const { return dot(c.normal, mean_[c.i] - mean_[c.j]); }
+double Gap::rate(const State &s, std::size_t k) const
+{
+  const Contact &c = s.contacts[k];
+  return dot(c.normal, mean_[c.i] - mean_[c.j]) + normal_drift(s, k);
+}
 
 // Whether the contact is left with no more overlap than the solver's tolerance leaves anyway.
 bool Gap::is_open(const State &s, std::size_t k, double rate) const
@@ -86,8 +91,8 @@ bool Gap::open_contact(const State &s, std::uint32_t k)
 {
   const Contact &c = s.contacts[k];
   if (final_[c.i] && final_[c.j]) return false;
-  const double now = rate(c);
-  if (is_open(s, k, now) || now >= normal_velocity(c, s.bodies.data())) return false;
+  const double now = rate(s, k), solved = normal_velocity(c, s.bodies.data()) + normal_drift(s, k);
+  if (is_open(s, k, now) || now >= solved) return false;
   for (const int b : {c.i, c.j}) {
     mean_[b] = s.bodies[b];
     final_[b] = 1;
@@ -105,7 +110,7 @@ NSCD_HOT void Gap::open_contacts(const State &s)
   for (std::size_t k = 0; k < n; ++k) {
     fetch_bodies(s.contacts[std::min(k + fetch_ahead, n - 1)], mean_.data());
     suspects_[count] = std::uint32_t(k);
-    count += !is_open(s, k, rate(s.contacts[k]));
+    count += !is_open(s, k, rate(s, k));
   }
   for (bool changed = true; changed;) {
     changed = false;

@@ -1,6 +1,7 @@
 #include "impacts.hpp"
 
 #include "../contact_order.hpp"
+#include "../drift_of.hpp"
 #include "../slides.hpp"
 
 #include <algorithm>
@@ -20,13 +21,14 @@ void smooth_half(State &s, double sign)
   if (s.friction.model != Model::frictionless) add_smooth_spins(s, 0.5 * sign);
 }
 
-// Biases of an impact: what is left of the velocity now, reversed.
+// Biases of an impact: what is left of the velocity now, drift included, reversed.
 void bias_impact(State &s, std::size_t k, double u)
 {
-  s.contacts[k].bias = s.settings.restitution * u;
+  s.contacts[k].bias = s.settings.restitution * u + normal_drift(s, k);
   with_friction(s.friction.model, [&]<class M>(M) {
     const auto slip = velocity<M>(s.contacts[k], s.bodies.data(), s.friction.spins.data()).t;
-    set_bias(s.friction.slides<M>()[k], slip * s.settings.e_t);
+    const auto drift = tangential_drift<M>(s, k);
+    set_bias(s.friction.slides<M>()[k], (slip + drift) * s.settings.e_t + drift);
   });
 }
 
@@ -36,7 +38,7 @@ std::size_t select_closing(State &s)
 {
   std::size_t closing = 0;
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
-    const double u = normal_velocity(s.contacts[k], s.bodies.data());
+    const double u = normal_velocity(s.contacts[k], s.bodies.data()) + normal_drift(s, k);
     const double slow = resting_kicks * s.infos[k].kick + tolerances * tolerance(s, worth(s.infos[k]));
     if (u >= -slow || std::max(s.infos[k].gap, 0.0) + s.dt * u >= 0) continue;
     swap_contacts(s, k, closing);

@@ -9,6 +9,7 @@
 // Makes exact: with theta = 1/2 the free flight, and with e = 1 also the energy, to round-off.
 // Fails: contacts are seen only once they overlap. The overlap is O(dt v) and never given back. In free flight
 // theta < 1/2 gains energy and theta > 1/2 loses it, (theta - 1/2) m g^2 dt^2 a step.
+#include "../drift_of.hpp"
 #include "../law.hpp"
 
 namespace nscd {
@@ -26,8 +27,9 @@ class Moreau final : public Law {
   void set_bias(State &s, std::size_t first) override
   {
     const double e = s.settings.restitution;
-    if (e == 0) return;
-    for (std::size_t k = first; k < s.contacts.size(); ++k) s.contacts[k].bias = e * s.infos[k].speed_before;
+    if (e == 0 && s.drift.of.empty()) return;
+    for (std::size_t k = first; k < s.contacts.size(); ++k)
+      s.contacts[k].bias = e * s.infos[k].speed_before + normal_drift(s, k);
   }
 
   void displace(State &s) override
