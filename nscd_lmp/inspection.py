@@ -156,7 +156,7 @@ class Inspection:
         return max(cutoffs.values()) * (1 - 1e-7 * multi)
 
     def communication_cutoff(self) -> float:
-        """Return the distance from a rank's part of the box up to which there are images; 0 where it differs by grain."""
+        """Return the distance from a rank's part of the box up to which it has images; 0 if grains differ in it."""
         return self._communication_cutoffs().get("", 0.0)
 
     def _communication_cutoffs(self) -> dict[str, float]:

@@ -72,6 +72,7 @@ def test_radii_adapted_every_tenth_step_grow_evenly(start, door):
     assert deepest.max() <= every * GROWTH * (1 + 1e-9)  # a step of the growth
 
 
+@pytest.mark.overlaps_not_asked("set grows them after the step")
 @BOTH
 def test_diameters_set_again_and_again_inside_a_run_part_at_their_mean_rate(start, door):
     every = 10

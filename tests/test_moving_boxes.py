@@ -91,6 +91,7 @@ def test_rough_grains_that_meet_across_a_sheared_face_slip(start, door, law, eve
     assert v[0, 0] > 0  # dragged along with the image above
 
 
+@pytest.mark.overlaps_not_asked("the box moves on after the step")
 @pytest.mark.parametrize("law", LAWS)
 @BOTH
 def test_grains_that_are_carried_by_the_box_have_its_strain_in_their_contacts(start, door, law):
@@ -115,6 +116,7 @@ def test_a_box_that_carries_some_grains_alone_is_refused(start, door):
         lmp.command("run 10")
 
 
+@pytest.mark.overlaps_not_asked("the box moves on after the step")
 @BOTH
 def test_obstacles_that_the_box_carries_approach_with_it(start, door):
     lmp = across_the_face(start, x=[[5, 5, 5], [5, 6, 5]])
@@ -125,6 +127,7 @@ def test_obstacles_that_the_box_carries_approach_with_it(start, door):
     np.testing.assert_allclose(state(lmp)[1][:, 1], [-0.1, 0], rtol=0.02)
 
 
+@pytest.mark.overlaps_not_asked("the box moves on after the step")
 @BOTH
 def test_a_wall_stands_still_while_the_box_carries_grains(start, door):
     lmp = start(grains([[5, 5, 0.5], [5, 5, 8]], 0.5, mass=1.0), DT, box=[(0, 10), (0, 10), (-10, 10)], vmax=10.0)
@@ -161,6 +164,7 @@ MOTIONS = {
 }
 
 
+@pytest.mark.overlaps_not_asked("the box moves on after the step")
 @pytest.mark.parametrize("remap", REMAPS)
 @pytest.mark.parametrize("motion", MOTIONS)
 @BOTH
@@ -220,6 +224,7 @@ def test_a_box_changed_between_and_inside_runs_jumps(start, door):
     assert (attached.stats["largest_overlap"][-1] if attached else lmp.extract_fix("nscd", 0, 1, 7)) == 0
 
 
+@pytest.mark.overlaps_not_asked("the box moves on after the step")
 @BOTH
 def test_a_box_changed_again_and_again_inside_a_run_closes_at_its_mean_rate(start, door):
     lmp = across_the_face(start)

@@ -57,6 +57,7 @@ NSCD_INLINE Residual frictional(const Problem &problem, const Contact &c, double
 template <class ResidualOf>
 NSCD_HOT Look look_at_contacts(const Problem &problem, ResidualOf residual_of)
 {
+  const double pushes = problem.sliding.model != Model::frictionless;
   std::vector<Joined> &joined = problem.workspace.joined;
   joined.resize(problem.contacts.size() + 1);
   Look look;
@@ -69,7 +70,8 @@ NSCD_HOT Look look_at_contacts(const Problem &problem, ResidualOf residual_of)
     const double w = 1 / c.w_inverse, push = w * c.impulse;
     const Residual residual = residual_of(c, w, k);
     const double left2 = look.add(info, residual.square, push, speed2(bi) + speed2(bj));
-    joined[count] = {bi[3] > 0 ? c.i : c.j, bj[3] > 0 ? c.j : c.i, left2, info.free2 + info.kick * info.kick};
+    const double stake2 = info.free2 + info.kick * info.kick + pushes * push * push;
+    joined[count] = {bi[3] > 0 ? c.i : c.j, bj[3] > 0 ? c.j : c.i, left2, stake2};
     count += (push > 0) | (residual.v < 0);   // no branch, which would be mispredicted
   }
   joined.resize(count);
@@ -116,7 +118,8 @@ void look_closer(const Problem &problem, Criterion &seen)
   if (problem.halo) problem.halo->sum(sums);
   seen.worst = std::sqrt(problem.halo ? problem.halo->max(look.worst2) : look.worst2);
   seen.typical = sums[1] > 0 ? std::sqrt(sums[0] / sums[1]) : 0;
-  if (seen.worst <= off_of_solved && problem.judges_islands) seen.island = std::max(seen.relative, worst_island(problem));
+  if (seen.worst > off_of_solved || !problem.judges_islands) return;
+  seen.island = std::max(seen.relative, worst_island(problem));
 }
 
 bool is_jammed(const Problem &problem)

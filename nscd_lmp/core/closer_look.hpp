@@ -1,10 +1,11 @@
 // Contacts judged one by one and island by island, by what each has at stake.
 //
-// A sum over a scene says nothing of a contact in it: where forces of 1 N and of 1e5 N act side by side, the small ones
-// could be left out and hardly change it. So where the sums of the criterion are met, this is looked at too:
-//   island    the natural map over (|dt f / m|^2 + v_free^2)^1/2, 2-norms, of the island where it is largest
-//   worst     a contact's natural map over (|dt f / m|^2 + v_free^2 + (W_nn p)^2)^1/2, of the contact where it is largest
-//   typical   the root of the mean square of a contact's natural map over |dt f / m|, 0 where no force acts
+// A sum over a scene says nothing of a contact in it: where forces of 1 N and of 1e5 N act side by side, the small
+// ones could be left out and hardly change it. So where the sums of the criterion are met, this is looked at too:
+//   island   the natural map over (|dt f / m|^2 + v_free^2)^1/2, 2-norms, of the island where it is largest; with
+//            friction (W_nn p)^2 is added: there velocities are not determined to more than a share of what pushes
+//   worst    a contact's natural map over (|dt f / m|^2 + v_free^2 + (W_nn p)^2)^1/2, the largest
+//   typical  the root of the mean square of a contact's natural map over |dt f / m|, 0 where no force acts
 #pragma once
 
 #include "criterion.hpp"
@@ -14,8 +15,9 @@ namespace nscd {
 // Fills these of `seen`; problem.infos are there, here or on another rank. Collective.
 void look_closer(const Problem &problem, Criterion &seen);
 
-// Whether obstacles that move press on contacts that cannot give way: one of them approaches its grain at a good part of
-// its own speed, although it pushes far harder than the grain's velocity is worth. No impulses solve that. Collective.
+// Whether obstacles that move press on contacts that cannot give way: one of them approaches its grain at a good part
+// of its own speed, although it pushes far harder than the grain's velocity is worth. No impulses solve that.
+// Collective.
 bool is_jammed(const Problem &problem);
 
 }    // namespace nscd

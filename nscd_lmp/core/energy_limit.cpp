@@ -91,8 +91,8 @@ void EnergyLimit::find_islands(const State &s, std::size_t count)
   share_.assign(islands_.count(), 0);
 }
 
-// Half the sum of p (u- + u+), J, of every island; u- with the velocities of `before`, or with those at the start of the
-// step. Both with the contacts' drift, since what drifts may do work.
+// Half the sum of p (u- + u+), J, of every island; u- with the velocities of `before`, or with those at the start of
+// the step. Both with the contacts' drift, since what drifts may do work.
 void EnergyLimit::find_work(const State &s, std::size_t count, const Motion *before, std::vector<double> &work)
 {
   work.assign(islands_.count(), 0);

@@ -53,8 +53,8 @@ class EnergyLimit {
   Motion before_, first_, second_;
   Islands islands_;
   std::vector<Joined> joined_;
-  // One an island: shares of second_, and work, J: what is the solver's own error, and what first_, second_ and their mean
-  // make.
+  // One an island: shares of second_, and work, J: what is the solver's own error, and what first_, second_ and their
+  // mean make.
   std::vector<double> share_, limit_, at_first_, at_second_, half_way_;
 };
 

@@ -1,5 +1,6 @@
 #include "left_places.hpp"
 
+#include "drifted.hpp"
 #include "error.hpp"
 
 #include <algorithm>
@@ -9,7 +10,8 @@ namespace nscd {
 
 namespace {
 
-// Of a radius. A new list wraps grains by the box' edges, which are longer than a radius, and rounds what it wraps.
+// Of a radius. A new list wraps grains by the box' edges, which are longer than a radius, and rounds what it wraps. A
+// box that carries grains rounds too.
 constexpr double rounded = 1e-9, wrapped = 1;
 
 }    // namespace
@@ -23,7 +25,7 @@ void LeftPlaces::remember(const State &s)
 double LeftPlaces::moved(const State &s, std::size_t before, int now) const
 {
   if (s.bodies[before][3] == 0 || !s.grains.moves(now)) return 0;
-  const Vec4 left = s.spheres[before].centre + s.displacement[before];
+  const Vec4 left = moved_in_arrays(s, int(before));
   const double *x = s.grains.x + 3 * std::size_t(now);
   const double far = std::max({std::abs(x[0] - left[0]), std::abs(x[1] - left[1]), std::abs(x[2] - left[2])});
   return far / s.grains.radius[now];
@@ -48,7 +50,7 @@ void LeftPlaces::require(const State &s, bool list_is_new)
       i = at->second;
     }
     const double radii = moved(s, k, i);
-    if (radii > (in_order ? 0 : rounded) && !(radii >= wrapped))
+    if (radii > rounded && !(radii >= wrapped))
       fail("grain ", tags_[k], " has been moved by another fix since the last step, by ", radii, " of its radius: two ",
            "integrators; remove the other one, or give the two disjoint groups");
   }

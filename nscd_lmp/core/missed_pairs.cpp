@@ -153,7 +153,8 @@ Bounds MissedPairs::partners(const State &s, int atom, double margin) const
   Bounds seen;   // in the frame, in which the others are within the pace
   for (const Vec4 &d : {Vec4{}, motion_.one[body] - frame_, motion_.other[body] - frame_}) seen.include(d);
   const Bounds earlier = since.less(since_);
-  const Bounds by_pace = Bounds{seen.lo + earlier.lo, seen.hi + earlier.hi}.wider(touch + (1 + 4 * same_pace) * pace_[body]);
+  const double wider = touch + (1 + 4 * same_pace) * pace_[body];
+  const Bounds by_pace = Bounds{seen.lo + earlier.lo, seen.hi + earlier.hi}.wider(wider);
   const Bounds near = against(s.bodies[body][3] > 0 ? all_ : moving_).common(by_pace);
   if (all_known(atom, near) || !has_profile()) return near;
   return near.common(against(profile_.around(list_.listed_at(atom), near.farthest(Bounds{{}, {}}))));

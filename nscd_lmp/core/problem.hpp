@@ -49,10 +49,10 @@ struct Problem {
   Team *team = nullptr;         // threads; none: the caller's alone
   const Parts *parts = nullptr;   // in which the contacts are ordered, for the team
   double round_off = 0;         // m/s: a residual of less a contact is none
-  // What every contact has at stake, beside the contacts; then each is judged by its own (closer_look.hpp) once the sums
-  // over all have met the goal.
+  // What every contact has at stake, beside the contacts; then each is judged by its own (closer_look.hpp) once the
+  // sums over all have met the goal.
   std::span<const ContactInfo> infos{};
-  std::span<const double> per_approach{};   // beside the contacts, 1 / the approach that may be left, s/m; or empty: any
+  std::span<const double> per_approach{};   // beside the contacts, 1 / the approach that may be left, s/m; or empty
   bool judges_contacts = false;  // whether there are infos; the same on all ranks
   bool judges_islands = false;
   Goal goal{};

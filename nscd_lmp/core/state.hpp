@@ -79,7 +79,7 @@ struct State {
   std::vector<double> moved{};           // (bodies) its length, m; scratch
   std::vector<Contact> contacts{};
   std::vector<ContactInfo> infos{};      // beside contacts
-  std::vector<double> per_approach{};    // beside contacts, 1 / the approach that a solved step may leave, s/m; or empty: any
+  std::vector<double> per_approach{};    // beside contacts, 1 / the approach that a step may leave, s/m; or empty: any
   std::vector<double> impact_impulse{};  // beside contacts, N s, of impacts resolved ahead of them; or empty
 
   Friction friction{};
@@ -97,8 +97,8 @@ struct State {
   double watch = 0;                    // surface distance within which pairs are watched, m
   double smooth_kick = 0;              // largest |dt f / m| of the step, m/s
   double round_off = 0;                // of velocities, m/s
-  double tol_of_worth = 0;             // what a solved step leaves of a contact's velocity in error: a share of worth(),
-  double tol_absolute = 0;             // and m/s
+  double tol_of_worth = 0;             // what a solved step leaves of a contact's velocity in error: a share of
+  double tol_absolute = 0;             // worth(), and m/s
 
   // Bodies that are grains, of this rank or copies of others'.
   int moving() const { return grains.owned + copies.count; }
