@@ -102,7 +102,8 @@ def attach(
         :func:`nscd_lmp.solve`. ``"paper"``: (42) of Barboteu & Dumont (2017), in m/s, the mean over the contacts.
         None: ``"natural"``, also where `tol` is given; `paper` means ``"paper"``.
     overlap : float, optional
-        Of ``law gap``: a step is solved only when no contact is driven deeper than this share of the smallest radius.
+        Of ``law gap``: a step is solved only when no contact is driven deeper than this share of its own
+        smaller radius.
         None: 5e-4 with the criterion ``"natural"``, no such condition with ``"paper"``.
     maxiter : int
         Iterations after which a step is given up; see `unconverged`.
