@@ -33,8 +33,8 @@ class Attached:
         Columns: `step`, the columns of ``fix nscd``'s vector (``contacts``, ``iterations``, ``criterion`` (42) and its
         parts ``motion``, ``bipotential``, ``penetration`` in m/s, ``relative_residual``, ``largest_overlap`` in m,
         ``dissipated_energy`` in J since the run began, ``largest_overlap_ratio`` over the smaller radius,
-        ``unconverged_steps`` and ``energy_limited_steps`` since the run began, ``worst_residual`` of a contact over what
-        it has at stake), ``seconds_contacts`` and
+        ``unconverged_steps`` and ``energy_limited_steps`` since the run began, ``worst_residual`` of a contact over
+        what it has at stake), ``seconds_contacts`` and
         ``seconds_solver``.
 
         It is read-only, and keeps its rows when more steps are taken. Reading it costs what the steps since the last

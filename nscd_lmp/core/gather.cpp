@@ -31,7 +31,7 @@ struct Search {
 }
 
 // Free velocity (14) and predicted centre (18) of one atom. LAMMPS has already moved obstacles to where they end the
-// step; they are taken back by dt v.
+// step; they are taken back by dt v. Belts stay where they are.
 NSCD_INLINE void load_body(State &s, int i, const Search &search, Largest &largest)
 {
   const Grains &g = s.grains;
@@ -41,7 +41,7 @@ NSCD_INLINE void load_body(State &s, int i, const Search &search, Largest &large
   const Vec4 before{v[0], v[1], v[2], 0};
   const Vec4 kick = Vec4{f[0], f[1], f[2], 0} * (s.dt * g.force_to_acceleration * inverse_mass);
   const Vec4 free = before + kick;
-  const bool has_moved = !moves && !(g.mask[i] & g.later);
+  const bool has_moved = !moves && way(s, i) == Way::has_moved;
   const Vec4 centre = Vec4{x[0], x[1], x[2], 0} + before * (s.dt * (search.prediction - has_moved));
   const double before2 = dot(before, before), free2 = dot(free, free), speed2 = std::max(before2, free2);
   const double kick2 = dot(kick, kick);
@@ -72,7 +72,7 @@ void place_images(State &s, const Search &search)
     }
     const Vec4 before = start_velocity(s, i), free = before + smooth_kick(s, i);
     const double speed2 = std::max(dot(before, before), dot(free, free));
-    const bool has_moved = s.bodies[i][3] == 0;
+    const bool has_moved = s.bodies[i][3] == 0 && way(s, i) == Way::has_moved;
     s.spheres[j] = {image + before * (s.dt * (search.prediction - has_moved)), g.radius[j],
                     s.dt * search.look_ahead * std::sqrt(speed2)};
   }

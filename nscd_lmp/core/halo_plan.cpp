@@ -90,7 +90,7 @@ void Halo::share_motion(State &s)
        [&](int body, double *to) {
          put(start_velocity(s, body), to);
          put(smooth_kick(s, body), to + 3);
-         to[6] = s.bodies[body][3];
+         to[6] = s.bodies[body][3] - double(way(s, body));   // an obstacle has no inverse mass
          if (!spins) return;
          put(start_spin(s, body), to + 7);
          put(smooth_spin_kick(s, body), to + 10);
@@ -99,7 +99,9 @@ void Halo::share_motion(State &s)
          const int c = body - s.grains.owned;
          copies.start[c] = Vec4{from[0], from[1], from[2], 0};
          copies.kick[c] = Vec4{from[3], from[4], from[5], 0};
-         s.bodies[body] = copies.start[c] + copies.kick[c] + Vec4{0, 0, 0, from[6]};
+         s.bodies[body] = copies.start[c] + copies.kick[c] + Vec4{0, 0, 0, std::max(0.0, from[6])};
+         if (from[6] < 0 && s.ways.empty()) s.ways.assign(s.moving(), Way::has_moved);
+         if (from[6] < 0) s.ways[body] = Way(int(-from[6]));
          if (!spins) return;
          copies.start_spin[c] = Vec4{from[7], from[8], from[9], 0};
          copies.spin_kick[c] = Vec4{from[10], from[11], from[12], 0};

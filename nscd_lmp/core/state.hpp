@@ -62,6 +62,9 @@ struct Copies {
   AlignedVector<Vec4> place{};                     // q_k, m, where a box moves
 };
 
+// What an obstacle with a velocity does in the step: LAMMPS has moved it ahead of it, or will behind it, or it is a belt.
+enum class Way : std::int8_t { has_moved, will_move, stands };
+
 struct State {
   const Settings &settings;
   Grains grains;
@@ -74,6 +77,7 @@ struct State {
   std::vector<std::pair<std::int32_t, int>> own_tags{};   // sorted: tag and index of owned atoms, if there are images
   Copies copies{};
   AlignedVector<Body> bodies{};          // (moving() + obstacle_copies a slab)
+  std::vector<Way> ways{};               // (moving()) of obstacles; or empty: none has a velocity
   std::vector<double> kicks{};           // (bodies) |dt f / m| of the step, m/s; obstacles 0
   AlignedVector<Vec4> displacement{};    // (moving()) from where contacts were sought to q_{k+1}
   std::vector<double> moved{};           // (bodies) its length, m; scratch
@@ -108,6 +112,8 @@ struct State {
     return moving() + obstacle_copies * slabs.of(i) + int(k % obstacle_copies);
   }
 };
+
+inline Way way(const State &s, int body) { return s.ways.empty() ? Way::has_moved : s.ways[body]; }
 
 // What a solved step leaves of a contact's velocity in error, m/s.
 inline double tolerance(const State &s, double worth) { return s.tol_of_worth * worth + s.tol_absolute; }

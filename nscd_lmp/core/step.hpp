@@ -1,6 +1,7 @@
 // One step of the scheme: arrays in, contacts, solver, arrays out. Both doors call this and nothing beneath it.
 #pragma once
 
+#include "belts.hpp"
 #include "detection.hpp"
 #include "drift.hpp"
 #include "energy_limit.hpp"
@@ -58,8 +59,13 @@ class Step {
   // Energy and unconverged steps count from here. `list_just_built`: the first step starts from its positions.
   void begin_run(bool list_just_built);
 
-  // What radii and box are as the run starts: without it the first step does not know what has changed since. Local.
-  void see(const Grains &grains) { drifts_.see(grains); }
+  // What radii and box are as the run starts, and where obstacles: without it the first step does not know what has
+  // changed since. Local.
+  void see(const Grains &grains)
+  {
+    drifts_.see(grains);
+    belts_.see(grains);
+  }
 
   // One step of length dt (s). Raises Error and leaves the arrays as they were if the input is bad, a contact
   // can be missed, or the step does not converge under `unconverged error`.
@@ -126,6 +132,7 @@ class Step {
   const std::unique_ptr<Halo> halo_;   // none on one rank
   const std::unique_ptr<Team> team_;   // none on one thread
   ListGuard list_;
+  Belts belts_;
   Drifts drifts_;
   const PairList *pairs_ = nullptr;    // of the step
   LeftPlaces left_;

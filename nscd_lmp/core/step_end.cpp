@@ -72,6 +72,7 @@ void Step::write_back()
   }
   if (state_.friction.model != Model::frictionless) write_back_spins(state_);
   drifts_.leave(state_);
+  belts_.see(g);
 }
 
 }    // namespace nscd

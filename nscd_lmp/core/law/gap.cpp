@@ -145,7 +145,7 @@ void Gap::displace(State &s)
   }
   for (int i = 0; i < s.moving(); ++i) {
     const Vec4 &w = mean_[i];
-    s.displacement[i] = Vec4{w[0], w[1], w[2], 0} * s.dt;
+    s.displacement[i] = Vec4{w[0], w[1], w[2], 0} * (way(s, i) == Way::stands ? 0.0 : s.dt);
   }
 }
 

@@ -37,7 +37,7 @@ class Moreau final : public Law {
     const double step = s.settings.theta * s.dt;
     for (int i = 0; i < s.moving(); ++i) {
       const Body &b = s.bodies[i];
-      s.displacement[i] = Vec4{b[0], b[1], b[2], 0} * step;
+      s.displacement[i] = Vec4{b[0], b[1], b[2], 0} * (way(s, i) == Way::stands ? 0.0 : step);
     }
   }
 };
