@@ -69,6 +69,7 @@ def test_bonds_that_come_between_runs_are_refused(balls, door):
         lmp.command("run 2")
 
 
+@pytest.mark.overlaps_not_asked("excluded pairs pass through each other")
 @BOTH
 @pytest.mark.parametrize(
     ("excluded", "named"), [("type 1 1", "of types 1 and 1"), ("group one two", "of groups one and two")]

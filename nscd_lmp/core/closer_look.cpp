@@ -14,6 +14,9 @@ namespace {
 // Of velocities, squared: what round-off leaves of bodies' speeds is no residual.
 constexpr double round_off2 = 1e-28;
 
+// With friction, of what a contact pushes: velocities are not determined to more than a share of that.
+constexpr double part_of_push2 = 0.1;
+
 NSCD_INLINE double speed2(const Body &b) { return b[0] * b[0] + b[1] * b[1] + b[2] * b[2]; }
 
 // Of squares.
@@ -57,7 +60,7 @@ NSCD_INLINE Residual frictional(const Problem &problem, const Contact &c, double
 template <class ResidualOf>
 NSCD_HOT Look look_at_contacts(const Problem &problem, ResidualOf residual_of)
 {
-  const double pushes = problem.sliding.model != Model::frictionless;
+  const double pushes = problem.sliding.model == Model::frictionless ? 0 : part_of_push2;
   std::vector<Joined> &joined = problem.workspace.joined;
   joined.resize(problem.contacts.size() + 1);
   Look look;
@@ -120,22 +123,6 @@ void look_closer(const Problem &problem, Criterion &seen)
   seen.typical = sums[1] > 0 ? std::sqrt(sums[0] / sums[1]) : 0;
   if (seen.worst > off_of_solved || !problem.judges_islands) return;
   seen.island = std::max(seen.relative, worst_island(problem));
-}
-
-bool is_jammed(const Problem &problem)
-{
-  constexpr double part = 0.1, far_harder2 = 1e4;
-  bool jammed = false;
-  for (std::size_t k = 0; k < problem.contacts.size() && !jammed; ++k) {
-    const Contact &c = problem.contacts[k];
-    const ContactInfo &info = problem.infos[k];
-    const Body &bi = problem.bodies[c.i], &bj = problem.bodies[c.j];
-    const double obstacle2 = bi[3] == 0 ? speed2(bi) : bj[3] == 0 ? speed2(bj) : 0;
-    const double v = normal_velocity(c, problem.bodies.data()), push = c.impulse / c.w_inverse;
-    const double worth2 = info.kick * info.kick + obstacle2;
-    jammed = v < 0 && v * v > part * part * obstacle2 && obstacle2 > 0 && push * push > far_harder2 * worth2;
-  }
-  return (problem.halo ? problem.halo->max(double(jammed)) : jammed) > 0;
 }
 
 }    // namespace nscd

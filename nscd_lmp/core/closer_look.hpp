@@ -15,9 +15,4 @@ namespace nscd {
 // Fills these of `seen`; problem.infos are there, here or on another rank. Collective.
 void look_closer(const Problem &problem, Criterion &seen);
 
-// Whether obstacles that move press on contacts that cannot give way: one of them approaches its grain at a good part
-// of its own speed, although it pushes far harder than the grain's velocity is worth. No impulses solve that.
-// Collective.
-bool is_jammed(const Problem &problem);
-
 }    // namespace nscd

@@ -201,10 +201,7 @@ bool Step::solve_part(const Part &part, int maxiter)
   SolverOptions options = options_;
   options.maxiter = maxiter;
   SolverReport solved = solve_problem(problem, options);
-  if (!solved.converged) {
-    look_closer(problem, solved.criterion);
-    jammed_ = is_jammed(problem);
-  }
+  if (!solved.converged) look_closer(problem, solved.criterion);
   report_.seconds_solver += seconds(start, Clock::now());
   if (!std::isfinite(solved.criterion.total()))
     fail("solver ", settings_.solver,
@@ -224,9 +221,8 @@ void Step::judge()
   const Criterion &seen = report_.criterion;
   if (report_.converged) return;
   ++report_.unconverged;
-  report_.jammed = jammed_;
   if (settings_.unconverged != Unconverged::error) return;
-  if (jammed_) fail("step not solved: ", nothing_gives_way, ", or use `unconverged warn`");
+  if (report_.jammed) fail("step not solved: ", nothing_gives_way, ", or use `unconverged warn`");
   const std::string_view remedy = "use `unconverged warn`";
   if (judged(seen, options_) >= options_.tol)
     fail("step not solved: criterion ", options_.stop == Stop::paper ? "(42)" : "natural", " is ",

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "belts.hpp"
+#include "calm.hpp"
 #include "detection.hpp"
 #include "drift.hpp"
 #include "energy_limit.hpp"
@@ -138,6 +139,7 @@ class Step {
   LeftPlaces left_;
   WarmStart memory_;
   EnergyLimit energy_limit_;
+  Calm calm_;
   SolverOptions options_;
   Workspace workspace_;
   StepReport report_;
@@ -148,7 +150,6 @@ class Step {
   AlignedVector<Body> free_bodies_;  // as gathered, where impacts may have to be resolved again
   AlignedVector<Vec4> free_spins_;
   bool energy_limited_ = false;    // in this step
-  bool jammed_ = false;            // the last solve that was given up
   bool shared_among_threads_ = false;   // the contacts that are being solved
   double free_norm_ = 0;           // of the step's contacts, m/s
   MissedPairs missed_{list_};

@@ -35,7 +35,7 @@ void Step::begin_rounds()
   report_.iterations = 0;
   report_.seconds_solver = 0;
   report_.converged = true;
-  report_.jammed = jammed_ = false;
+  report_.jammed = false;
   energy_limited_ = false;
   state_.impact_impulse.clear();
   state_.per_approach.clear();
@@ -68,6 +68,7 @@ void Step::solve()
     const Part part{state_.contacts.size(), e, e_t, free_norm_};
     solved = !briefly || sweep_briefly(part, sweeps);
     if (!briefly) solve_within_energy(part, EnergyLimit::From::step);
+    report_.jammed = !briefly && !report_.converged && calm_.slow_down(state_, part.contacts);
     if (halo_) halo_->refresh(state_);
     law_->displace(state_);
     first = state_.contacts.size();

@@ -1,0 +1,98 @@
+#include "calm.hpp"
+
+#include "drift_of.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nscd {
+
+namespace {
+
+double speed2(const Vec4 &v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
+
+// A grain of the contact.
+int grain_of(const State &s, const Contact &c) { return s.bodies[c.i][3] > 0 ? c.i : c.j; }
+
+}    // namespace
+
+void Calm::find_islands(const State &s, std::size_t count)
+{
+  joined_.clear();
+  for (std::size_t k = 0; k < count; ++k) {
+    const Contact &c = s.contacts[k];
+    if (c.impulse > 0 && s.bodies[c.i][3] > 0 && s.bodies[c.j][3] > 0) joined_.push_back({c.i, c.j});
+  }
+  islands_.find(s.bodies.size(), joined_, s.halo);
+  of_.assign(islands_.count(), {});
+  for (int b = 0; b < s.moving(); ++b) {
+    if (s.bodies[b][3] == 0) continue;
+    Island &island = of_[islands_.of(b)];
+    island.drive = std::max(island.drive, std::sqrt(speed2(start_velocity(s, b) + smooth_kick(s, b))));
+    if (b >= s.grains.owned) continue;   // counted by its owner
+    island.mass += 1 / s.bodies[b][3];
+    island.energy += 0.5 * speed2(s.bodies[b]) / s.bodies[b][3];
+  }
+}
+
+// What obstacles and drifts drive it by, all ranks' together.
+void Calm::find_drives(const State &s, std::size_t count)
+{
+  for (std::size_t k = 0; k < count; ++k) {
+    const Contact &c = s.contacts[k];
+    Island &island = of_[islands_.of(grain_of(s, c))];
+    for (const int b : {c.i, c.j})
+      if (s.bodies[b][3] == 0) island.closing = std::max(island.closing, std::sqrt(speed2(s.bodies[b])));
+    island.closing = std::max(island.closing, std::abs(normal_drift(s, k)));
+  }
+  for (Island &island : of_) island.drive = std::max(island.drive, island.closing);
+  if (!s.halo) return;
+  double sums[] = {of_[0].mass, of_[0].energy}, largest[] = {of_[0].drive, of_[0].closing};
+  s.halo->sum(sums);
+  s.halo->max(largest);
+  of_[0].mass = sums[0], of_[0].energy = sums[1];
+  of_[0].drive = largest[0], of_[0].closing = largest[1];
+}
+
+// A contact is that still approaches by a good part of what drives it.
+void Calm::find_stuck(const State &s, std::size_t count)
+{
+  constexpr double part = 0.1, far_harder = 100;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Contact &c = s.contacts[k];
+    Island &island = of_[islands_.of(grain_of(s, c))];
+    const double v = normal_velocity(c, s.bodies.data()) + normal_drift(s, k), push = c.impulse / c.w_inverse;
+    if (!(v < -part * island.drive)) continue;
+    island.stuck = true;
+    island.jammed |= island.closing > 0 && v < -part * island.closing && push > far_harder * island.drive;
+  }
+  if (!s.halo) return;
+  double seen[] = {double(of_[0].stuck), double(of_[0].jammed)};
+  s.halo->max(seen);
+  of_[0].stuck = seen[0] > 0, of_[0].jammed = seen[1] > 0;
+}
+
+void Calm::slow_down(State &s) const
+{
+  for (int b = 0; b < s.moving(); ++b) {
+    if (s.bodies[b][3] == 0) continue;
+    const Island &island = of_[islands_.of(b)];
+    const double most = 0.5 * island.mass * island.drive * island.drive;
+    if (!island.stuck || !(island.energy > most)) continue;
+    const double share = std::sqrt(most / island.energy);
+    s.bodies[b] *= Vec4{share, share, share, 1};
+  }
+}
+
+bool Calm::slow_down(State &s, std::size_t count)
+{
+  find_islands(s, count);
+  find_drives(s, count);
+  find_stuck(s, count);
+  slow_down(s);
+  double jammed = 0;
+  for (const Island &island : of_) jammed = std::max(jammed, double(island.jammed));
+  return (s.halo ? s.halo->max(jammed) : jammed) > 0;
+}
+
+}    // namespace nscd

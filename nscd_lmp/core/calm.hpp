@@ -1,0 +1,40 @@
+// Steps that are given up because nothing can give way: grains are not thrown.
+//
+// Where obstacles, a box or growing grains close in on grains that have nowhere to go, no impulses are a solution, those
+// that sweeps find grow without end, and so can velocities. An island of such a step keeps no more kinetic energy than it
+// would have if all of it moved as fast as what drives it: the fastest of its free grains, its obstacles and its drift.
+#pragma once
+
+#include "islands.hpp"
+#include "state.hpp"
+
+#include <vector>
+
+namespace nscd {
+
+class Calm {
+ public:
+  // Slows down the islands of the first `count` contacts that cannot give way and are faster than that. Returns whether
+  // obstacles or what drifts close in on any of them, pushing far harder than that is worth. Collective.
+  bool slow_down(State &state, std::size_t count);
+
+ private:
+  struct Joined {
+    std::int32_t i, j;
+  };
+  struct Island {
+    double mass = 0, energy = 0;   // kg, J
+    double drive = 0, closing = 0;   // m/s: of all that drives it, and of what is no grain
+    bool stuck = false, jammed = false;
+  };
+  void find_islands(const State &state, std::size_t count);
+  void find_drives(const State &state, std::size_t count);
+  void find_stuck(const State &state, std::size_t count);
+  void slow_down(State &state) const;
+
+  Islands islands_;
+  std::vector<Joined> joined_;
+  std::vector<Island> of_;
+};
+
+}    // namespace nscd
