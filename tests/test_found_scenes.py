@@ -46,10 +46,8 @@ def corner(far, spins):
 
 WALLS = [FLOOR, nscd_lmp.Plane((0, 0, 0), (0.96, 0, 0.28)), nscd_lmp.Plane((0, 0, 0), (0, 1, 0))]
 TIGHT = {"criterion": "natural", "tol": 1e-10, "maxiter": 100000}
-OF_THE_WHOLE_SCENE = pytest.mark.xfail(strict=True, reason="the energy limit sums up and scales back the whole scene")
 
 
-@OF_THE_WHOLE_SCENE
 @BOTH
 @pytest.mark.parametrize("law", LAWS)
 def test_elastic_pair_parts_as_it_met_while_impulses_elsewhere_are_scaled_back(start, door, law):
@@ -59,7 +57,6 @@ def test_elastic_pair_parts_as_it_met_while_impulses_elsewhere_are_scaled_back(s
     np.testing.assert_allclose(state(lmp)[1][1:, 0], [-0.5, 0.5], rtol=0, atol=1e-8)
 
 
-@OF_THE_WHOLE_SCENE
 @BOTH
 @pytest.mark.parametrize("law", LAWS)
 def test_grain_in_a_corner_makes_no_energy_while_others_dissipate(start, door, law):

@@ -170,6 +170,18 @@ int SceneChecks::held_groups() const
   return bits;
 }
 
+// LAMMPS calls fixes in the order of its list, and every other integrator moves its atoms ahead of forces.
+int SceneChecks::later_groups() const
+{
+  int bits = 0;
+  bool later = false;
+  for (Fix *other : modify->get_fix_list()) {
+    if (later && utils::strmatch(other->style, "^nscd")) bits |= other->groupbit;
+    if (other == fix_) later = true;
+  }
+  return bits;
+}
+
 // LAMMPS does not tell what a compute reads, and evaluates computes when fixes and variables ask for them. Its own
 // three, thermo_temp, thermo_press and thermo_pe, read no fix.
 bool SceneChecks::rows_may_be_read() const
