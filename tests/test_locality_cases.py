@@ -44,7 +44,6 @@ def test_column_rests_beside_balls_that_are_pressed_on_the_floor(start, door, la
     assert (fastest <= 0.05, moved <= 5e-4, gained <= 2e-3) == (True, True, True), (fastest, moved, gained)
 
 
-
 @BOTH
 @LAWS
 @pytest.mark.parametrize("force", [0.0, 600.0, 1e5])
