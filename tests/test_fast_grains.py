@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
 import pytest
 from all_pairs import largest_overlap, of_lammps
 from scenes import DOORS, FLOOR, GRAVITY, grains, harden, state
-
-import nscd_lmp
 
 BOTH = pytest.mark.parametrize("door", DOORS)
 
@@ -60,7 +59,7 @@ def test_chain_of_elastic_balls_ever_lighter_gives_on_its_velocity_impact_by_imp
     harden(lmp, door, restitution=1.0)
     # each meets one at rest: v' = v 2 m / (m + m'), and what it leaves behind, v (m - m') / (m + m')
     right, arrives = [], 1.0
-    for m, lighter in zip(mass[:-2], mass[1:-1], strict=True):
+    for m, lighter in itertools.pairwise(mass[:-1]):
         right.append(arrives * (m - lighter) / (m + lighter))
         arrives *= 2 * m / (m + lighter)
     lmp.command(f"run {round(0.1 / dt)}")
