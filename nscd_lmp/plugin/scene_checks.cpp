@@ -171,13 +171,15 @@ int SceneChecks::held_groups() const
 }
 
 // LAMMPS calls fixes in the order of its list, and every other integrator moves its atoms ahead of forces.
-int SceneChecks::later_groups() const
+SceneChecks::OtherGroups SceneChecks::groups_of_other_fixes_nscd() const
 {
-  int bits = 0;
+  OtherGroups bits;
   bool later = false;
   for (Fix *other : modify->get_fix_list()) {
-    if (later && utils::strmatch(other->style, "^nscd")) bits |= other->groupbit;
-    if (other == fix_) later = true;
+    if (other == fix_)
+      later = true;
+    else if (utils::strmatch(other->style, "^nscd"))
+      (later ? bits.later : bits.earlier) |= other->groupbit;
   }
   return bits;
 }
