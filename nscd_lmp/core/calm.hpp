@@ -1,8 +1,9 @@
 // Steps that are given up because nothing can give way: grains are not thrown.
 //
-// Where obstacles, a box or growing grains close in on grains that have nowhere to go, no impulses are a solution, those
-// that sweeps find grow without end, and so can velocities. An island of such a step keeps no more kinetic energy than it
-// would have if all of it moved as fast as what drives it: the fastest of its free grains, its obstacles and its drift.
+// Where obstacles, a box or growing grains close in on grains that have nowhere to go, no impulses are a solution,
+// those that sweeps find grow without end, and so can velocities. An island of such a step keeps no more kinetic energy
+// than it would have if all of it moved as fast as what drives it: the fastest of its free grains, its obstacles and
+// its drift.
 #pragma once
 
 #include "islands.hpp"

@@ -11,8 +11,8 @@ namespace nscd {
 
 namespace {
 
-// Of velocities, squared: what round-off leaves of bodies' speeds is no residual.
-constexpr double round_off2 = 1e-28;
+// Of velocities, squared: what round-off leaves of bodies' speeds, and of what impulses do to them, is no residual.
+constexpr double round_off2 = 1e-25;
 
 // With friction, of what a contact pushes: velocities are not determined to more than a share of that.
 constexpr double part_of_push2 = 0.1;
@@ -27,7 +27,8 @@ struct Look {
   NSCD_INLINE double add(const ContactInfo &info, double residual2, double push, double speed2)
   {
     constexpr double least = 1e-300;
-    const double left2 = std::max(0.0, residual2 - round_off2 * speed2), kick2 = info.kick * info.kick;
+    const double kick2 = info.kick * info.kick;
+    const double left2 = std::max(0.0, residual2 - round_off2 * (speed2 + push * push));
     worst2 = std::max(worst2, left2 / (kick2 + info.free2 + push * push + least));
     of_kicks2 += kick2 > 0 ? left2 / kick2 : 0.0;
     return left2;

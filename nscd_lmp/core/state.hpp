@@ -62,7 +62,7 @@ struct Copies {
   AlignedVector<Vec4> place{};                     // q_k, m, where a box moves
 };
 
-// What an obstacle with a velocity does in the step: LAMMPS has moved it ahead of it, or will behind it, or it is a belt.
+// What an obstacle with a velocity does: LAMMPS has moved it ahead of the step, or will behind it, or it is a belt.
 enum class Way : std::int8_t { has_moved, will_move, stands };
 
 struct State {

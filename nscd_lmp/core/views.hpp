@@ -35,6 +35,7 @@ struct Grains {
   const int *mask = nullptr;       // (owned + ghosts)
   int group = 1;                   // an atom moves if mask & group; the others are obstacles of infinite mass
   int later = 0;                   // obstacles of these groups move later in the step, all others have already moved
+  int earlier = 0;                 // obstacles of these groups have moved since images were sent: their images have not
   int held = 0;                    // and so are those with mask & held, whose velocities are set to 0
   bool watched = false;            // nothing else may move grains between two steps, unless Step::forget_places is told
   double force_to_acceleration = 1;  // LAMMPS' ftm2v

@@ -115,6 +115,7 @@ void FixNscd::check_run()
     checks_.require_future_bonds_listed();
   });
   held_ = checks_.held_groups();
+  others_ = checks_.groups_of_other_fixes_nscd();
   rows_every_step_ = checks_.rows_may_be_read();
   excludes_ = false;
   tell_of_exclusions();
@@ -255,6 +256,8 @@ nscd::Grains FixNscd::grains()
   g.mask = atom->mask;
   g.group = groupbit;
   g.held = held_;
+  g.earlier = others_.earlier;
+  g.later = others_.later;
   g.force_to_acceleration = force->ftm2v;
   g.square_to_energy = force->mvv2e;
   look_at_box();

@@ -61,6 +61,7 @@ class FixNscd : public Fix {
   double list_reach_ = 0;
   double list_limit_ = 0;               // as ContactList has it
   int held_ = 0;                        // bits of the groups of fix freeze
+  SceneChecks::OtherGroups others_;     // bits of the groups of other fixes nscd
   std::vector<double> list_cutoffs_;   // (types + 1, types + 1) of centres
   nscd::Images images_;
   bool rows_every_step_ = false;

@@ -170,6 +170,20 @@ int SceneChecks::held_groups() const
   return bits;
 }
 
+// LAMMPS calls fixes in the order of its list, and every other integrator moves its atoms ahead of forces.
+SceneChecks::OtherGroups SceneChecks::groups_of_other_fixes_nscd() const
+{
+  OtherGroups bits;
+  bool later = false;
+  for (Fix *other : modify->get_fix_list()) {
+    if (other == fix_)
+      later = true;
+    else if (utils::strmatch(other->style, "^nscd"))
+      (later ? bits.later : bits.earlier) |= other->groupbit;
+  }
+  return bits;
+}
+
 // LAMMPS does not tell what a compute reads, and evaluates computes when fixes and variables ask for them. Its own
 // three, thermo_temp, thermo_press and thermo_pe, read no fix.
 bool SceneChecks::rows_may_be_read() const

@@ -31,6 +31,11 @@ class SceneChecks : protected Pointers {
   std::string exclusions(const nscd::Grains &grains);
   // Bits of the groups that fix freeze holds.
   int held_groups() const;
+  // Bits of the groups of fixes nscd that come in a step before this one, and after it.
+  struct OtherGroups {
+    int earlier = 0, later = 0;
+  };
+  OtherGroups groups_of_other_fixes_nscd() const;
   // Whether something may read the contacts' rows at any step.
   bool rows_may_be_read() const;
 
