@@ -54,45 +54,43 @@ void Calm::find_drives(const State &s, std::size_t count)
   of_[0].drive = largest[0], of_[0].closing = largest[1];
 }
 
-// A contact is that still approaches by a good part of what drives it.
-void Calm::find_stuck(const State &s, std::size_t count)
+// Jammed is an island in which a contact still approaches by a good part of what closes in.
+void Calm::find_jams(const State &s, std::size_t count)
 {
   constexpr double part = 0.1, far_harder = 100;
   for (std::size_t k = 0; k < count; ++k) {
     const Contact &c = s.contacts[k];
     Island &island = of_[islands_.of(grain_of(s, c))];
     const double v = normal_velocity(c, s.bodies.data()) + normal_drift(s, k), push = c.impulse / c.w_inverse;
-    if (!(v < -part * island.drive)) continue;
-    island.stuck = true;
     island.jammed |= island.closing > 0 && v < -part * island.closing && push > far_harder * island.drive;
   }
-  if (!s.halo) return;
-  double seen[] = {double(of_[0].stuck), double(of_[0].jammed)};
-  s.halo->max(seen);
-  of_[0].stuck = seen[0] > 0, of_[0].jammed = seen[1] > 0;
+  if (s.halo) of_[0].jammed = s.halo->max(double(of_[0].jammed)) > 0;
 }
 
-void Calm::slow_down(State &s) const
+// Returns the energy that this rank's grains have lost, J.
+double Calm::slow_down(State &s) const
 {
+  double lost = 0;
   for (int b = 0; b < s.moving(); ++b) {
     if (s.bodies[b][3] == 0) continue;
     const Island &island = of_[islands_.of(b)];
     const double most = 0.5 * island.mass * island.drive * island.drive;
-    if (!island.stuck || !(island.energy > most)) continue;
-    const double share = std::sqrt(most / island.energy);
+    if (!island.jammed || !(island.energy > most)) continue;
+    const double share2 = most / island.energy, share = std::sqrt(share2);
+    if (b < s.grains.owned) lost += 0.5 * speed2(s.bodies[b]) / s.bodies[b][3] * (1 - share2);
     s.bodies[b] *= Vec4{share, share, share, 1};
   }
+  return lost;
 }
 
-bool Calm::slow_down(State &s, std::size_t count)
+Calm::Found Calm::slow_down(State &s, std::size_t count)
 {
   find_islands(s, count);
   find_drives(s, count);
-  find_stuck(s, count);
-  slow_down(s);
+  find_jams(s, count);
   double jammed = 0;
   for (const Island &island : of_) jammed = std::max(jammed, double(island.jammed));
-  return (s.halo ? s.halo->max(jammed) : jammed) > 0;
+  return {(s.halo ? s.halo->max(jammed) : jammed) > 0, slow_down(s)};
 }
 
 }    // namespace nscd

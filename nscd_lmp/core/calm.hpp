@@ -15,9 +15,12 @@ namespace nscd {
 
 class Calm {
  public:
-  // Slows down the islands of the first `count` contacts that cannot give way and are faster than that. Returns whether
-  // obstacles or what drifts close in on any of them, pushing far harder than that is worth. Collective.
-  bool slow_down(State &state, std::size_t count);
+  struct Found {
+    bool jammed = false;   // obstacles or what drifts close in on grains, pushing far harder than that is worth
+    double energy = 0;     // kinetic energy taken, J; of this rank
+  };
+  // Slows down the jammed islands of the first `count` contacts that are faster than that. Collective.
+  Found slow_down(State &state, std::size_t count);
 
  private:
   struct Joined {
@@ -26,12 +29,12 @@ class Calm {
   struct Island {
     double mass = 0, energy = 0;   // kg, J
     double drive = 0, closing = 0;   // m/s: of all that drives it, and of what is no grain
-    bool stuck = false, jammed = false;
+    bool jammed = false;
   };
   void find_islands(const State &state, std::size_t count);
   void find_drives(const State &state, std::size_t count);
-  void find_stuck(const State &state, std::size_t count);
-  void slow_down(State &state) const;
+  void find_jams(const State &state, std::size_t count);
+  double slow_down(State &state) const;
 
   Islands islands_;
   std::vector<Joined> joined_;

@@ -140,6 +140,7 @@ class Step {
   WarmStart memory_;
   EnergyLimit energy_limit_;
   Calm calm_;
+  Calm::Found calmed_;             // in the last solve
   SolverOptions options_;
   Workspace workspace_;
   StepReport report_;

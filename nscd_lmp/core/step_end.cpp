@@ -50,6 +50,7 @@ NSCD_HOT void Step::tally_contacts()
   if (halo_) halo_->max(largest);
   report_.largest_overlap = largest[0];
   report_.largest_overlap_ratio = largest[1];
+  work -= 2 * calmed_.energy;
   report_.dissipated_in_step = -0.5 * s.grains.square_to_energy * sum_everywhere(s, work);
   report_.dissipated += report_.dissipated_in_step;
 }

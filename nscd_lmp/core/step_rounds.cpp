@@ -35,7 +35,6 @@ void Step::begin_rounds()
   report_.iterations = 0;
   report_.seconds_solver = 0;
   report_.converged = true;
-  report_.jammed = false;
   energy_limited_ = false;
   state_.impact_impulse.clear();
   state_.per_approach.clear();
@@ -68,7 +67,7 @@ void Step::solve()
     const Part part{state_.contacts.size(), e, e_t, free_norm_};
     solved = !briefly || sweep_briefly(part, sweeps);
     if (!briefly) solve_within_energy(part, EnergyLimit::From::step);
-    report_.jammed = !briefly && !report_.converged && calm_.slow_down(state_, part.contacts);
+    calmed_ = !briefly && !report_.converged ? calm_.slow_down(state_, part.contacts) : Calm::Found{};
     if (halo_) halo_->refresh(state_);
     law_->displace(state_);
     first = state_.contacts.size();
@@ -78,6 +77,7 @@ void Step::solve()
   }
   report_.contacts = std::int64_t(sum_everywhere(state_, double(state_.contacts.size())));
   report_.energy_limited += energy_limited_;
+  report_.jammed = calmed_.jammed;
   judge();
 }
 
