@@ -109,8 +109,8 @@ def test_overlaps_are_known_whatever_changes_between_runs(door: str) -> None:
             lmp.close()
 
     change = st.tuples(st.sampled_from(list(CHANGES)), st.integers(1, 40), st.floats(0.01, 1.0))
-    # LAMMPS crashes where create_atoms meets fix adapt
-    alone = random_scenes.random_scenes(pushes=(), law="gap", grows=0.0)
+    # LAMMPS crashes where create_atoms meets fix adapt; fix deform carries grains after a step, before the question
+    alone = random_scenes.random_scenes(pushes=(), law="gap", grows=0.0, deforms="")
     explore(check, alone, st.lists(change, min_size=1, max_size=4), examples=25)
 
 

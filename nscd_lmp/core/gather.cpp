@@ -61,18 +61,19 @@ NSCD_INLINE void load_body(State &s, int i, const Search &search, Largest &large
 void place_images(State &s, const Search &search)
 {
   const Grains &g = s.grains;
+  const auto of = [&g](int j, int groups) { return groups != 0 && (g.mask[j] & groups) != 0; };
   for (int j = g.owned; j < g.owned + g.ghosts; ++j) {
     const int i = s.owner[j];
     const double *xj = g.x + 3 * std::size_t(j);
     const Vec4 image{xj[0], xj[1], xj[2], 0};
-    if (i < g.owned && !(g.mask[j] & g.earlier)) {
+    if (i < g.owned && !of(j, g.earlier)) {
       const double *xi = g.x + 3 * std::size_t(i);
       s.spheres[j] = {s.spheres[i].centre + (image - Vec4{xi[0], xi[1], xi[2], 0}), g.radius[i], s.spheres[i].reach};
       continue;
     }
     const Vec4 before = start_velocity(s, i), free = before + smooth_kick(s, i);
     const double speed2 = std::max(dot(before, before), dot(free, free));
-    const bool has_moved = s.bodies[i][3] == 0 && way(s, i) == Way::has_moved && !(g.mask[j] & g.earlier);
+    const bool has_moved = s.bodies[i][3] == 0 && way(s, i) == Way::has_moved && !of(j, g.earlier);
     s.spheres[j] = {image + before * (s.dt * (search.prediction - has_moved)), g.radius[j],
                     s.dt * search.look_ahead * std::sqrt(speed2)};
   }

@@ -32,8 +32,8 @@ NSCD_HOT void Step::tally_contacts()
     Vec4 separation = a.centre + s.displacement[c.i];
     if (!s.drift.of.empty()) {
       info.gap = gap_at(s, {info.atom_i, info.atom_j}, in_arrays);
-      info.radius = in_arrays(s, info.atom_i).radius;
-      if (info.atom_j >= 0) info.radius = std::min(info.radius, in_arrays(s, info.atom_j).radius);
+      info.radius = s.grains.radius[info.atom_i];
+      if (info.atom_j >= 0) info.radius = std::min(info.radius, s.grains.radius[info.atom_j]);
       work -= c.impulse * normal_drift(s, k);   // which speed_before has
     } else if (info.atom_j >= 0) {
       const Sphere &b = s.spheres[info.atom_j];
