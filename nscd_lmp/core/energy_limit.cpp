@@ -65,7 +65,7 @@ void EnergyLimit::load_blend(State &s, std::size_t count) const
   for (std::size_t i = 0; i < s.bodies.size(); ++i) {
     const double share = share_[islands_.of(int(i))];
     s.bodies[i] = mix(first_.bodies[i], second_.bodies[i], share);
-    s.friction.spins[i] = mix(first_.spins[i], second_.spins[i], share);
+    if (!first_.spins.empty()) s.friction.spins[i] = mix(first_.spins[i], second_.spins[i], share);
   }
   const auto share_of = [&](std::size_t k) { return share_[islands_.of(grain_of(s, s.contacts[k]))]; };
   for (std::size_t k = 0; k < count; ++k)
@@ -96,6 +96,13 @@ void EnergyLimit::find_islands(const State &s, std::size_t count)
 void EnergyLimit::find_work(const State &s, std::size_t count, const Motion *before, std::vector<double> &work)
 {
   work.assign(islands_.count(), 0);
+  for (std::size_t k = 0; s.friction.model == Model::frictionless && k < count; ++k) {
+    const Contact &c = s.contacts[k];
+    const double first = before ? normal_velocity(c, before->bodies.data()) + normal_drift(s, k)
+                                : s.infos[k].speed_before;
+    const double after = normal_velocity(c, s.bodies.data()) + normal_drift(s, k);
+    work[islands_.of(grain_of(s, c))] += 0.5 * c.impulse * (first + after);
+  }
   with_friction(s.friction.model, [&]<class M>(M) {
     for (std::size_t k = 0; k < count; ++k) {
       const Contact &c = s.contacts[k];

@@ -7,7 +7,7 @@
 // quadratic function of the share. So a solution that would make energy is blended with the inelastic one until it
 // makes none.
 //
-// An unsolved frictional problem, given up after maxiter, can show any energy. It is blended with no impulses at all
+// An unsolved problem, given up after maxiter, can show any energy. It is blended with no impulses at all
 // until the contacts raise the kinetic energy above that of the free motion no more: they give way, but throw nothing.
 //
 // All of it island by island (islands.hpp): what one makes no other pays for.

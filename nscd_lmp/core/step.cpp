@@ -154,14 +154,14 @@ void Step::share_among_threads(std::size_t contacts)
   if (moved && halo_) halo_->find_touching(state_);
 }
 
-// With friction the solution is kept from making energy; what a custom solver answers is taken as it is.
+// What is given up, and with friction Newton's law, is kept from making energy; what a custom solver answers is taken as
+// it is.
 void Step::solve_within_energy(const Part &part, EnergyLimit::From from)
 {
   share_among_threads(part.contacts);
-  const bool newton = part.e != part.e_t;
+  const bool newton = state_.friction.model != Model::frictionless && part.e != part.e_t;
   const auto solve = [&] { return solve_part(part, options_.maxiter); };
-  const bool as_it_is = custom_ || state_.friction.model == Model::frictionless;
-  if (as_it_is) solve();
+  if (custom_) solve();
   else energy_limited_ |= energy_limit_.solve(state_, part.contacts, newton, from, solve);
 }
 
