@@ -38,7 +38,7 @@ NSCD_INLINE void load_body(State &s, int i, const Search &search, Largest &large
   const double *x = g.x + 3 * std::size_t(i), *v = g.v + 3 * std::size_t(i), *f = g.f + 3 * std::size_t(i);
   const bool moves = g.moves(i);
   const double inverse_mass = moves ? 1 / g.mass[i] : 0;
-  const Vec4 before{v[0], v[1], v[2], 0};
+  const Vec4 before = moves ? Vec4{v[0], v[1], v[2], 0} : start_velocity(s, i);
   const Vec4 kick = Vec4{f[0], f[1], f[2], 0} * (s.dt * g.force_to_acceleration * inverse_mass);
   const Vec4 free = before + kick;
   const bool has_moved = !moves && way(s, i) == Way::has_moved;

@@ -78,6 +78,7 @@ struct State {
   Copies copies{};
   AlignedVector<Body> bodies{};          // (moving() + obstacle_copies a slab)
   std::vector<Way> ways{};               // (moving()) of obstacles; or empty: none has a velocity
+  AlignedVector<Vec4> paces{};           // (owned) velocities of obstacles in the step, m/s; or empty, as ways
   std::vector<double> kicks{};           // (bodies) |dt f / m| of the step, m/s; obstacles 0
   AlignedVector<Vec4> displacement{};    // (moving()) from where contacts were sought to q_{k+1}
   std::vector<double> moved{};           // (bodies) its length, m; scratch
@@ -128,10 +129,11 @@ inline double left_of_overlap(const State &s, double worth, double radius)
 // Over all ranks.
 inline double sum_everywhere(const State &s, double value) { return s.halo ? s.halo->sum(value) : value; }
 
-// Velocity of grain i at the start of the step, m/s.
+// Velocity of grain i at the start of the step, of an obstacle in the step, m/s.
 NSCD_INLINE Vec4 start_velocity(const State &s, int i)
 {
   if (i >= s.grains.owned) return s.copies.start[i - s.grains.owned];
+  if (!s.paces.empty() && !s.grains.moves(i)) return s.paces[i];
   const double *v = s.grains.v + 3 * std::size_t(i);
   return Vec4{v[0], v[1], v[2], 0};
 }

@@ -94,7 +94,7 @@ void Step::prepare(const PairList &pairs)
     halo_->plan(state_);
     if (settings_.warmstart) memory_.follow_grains(*halo_, state_.friction.model);
   }
-  belts_.find(state_);
+  belts_.find(state_, law_->looks_ahead());
   together([&] { largest = gather_owned(state_, prediction_, look_ahead_); });
   grown = drifts_.look(state_, list_.is_new());
   kick2 = largest.kick2, speed2 = largest.speed2, moved = list_.farthest_moved(state_), unlisted = -pairs.reach;
