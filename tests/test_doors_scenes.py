@@ -326,3 +326,12 @@ def test_group_that_changes_has_the_same_bits_through_both_doors():
         lmp.close()
     np.testing.assert_array_equal(*ends)
     assert ends[0][0, 0] > 0 and ends[0][1, 0] == 1.5  # one came out of the group and stays there, the other waits
+
+
+@BOTH
+def test_box_narrower_than_a_grain_is_refused(start, door):
+    # a grain is no contact of its own image, so its overlap of 0.2 r was not seen
+    lmp = start(grains((0.02, 0.1, 0.05), 0.05), 1e-3, box=[(0, 0.09), (0, 0.2), (0, 1)], boundary="p p f")
+    harden(lmp, door, walls=[FLOOR])
+    with pytest.raises(refusal(door), match="overlaps its own periodic image"):
+        lmp.command("run 1")

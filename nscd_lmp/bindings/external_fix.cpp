@@ -157,7 +157,8 @@ void ExternalFix::require_all_grains(int owned)
   if (ranks_) ranks_->sum({&here, 1});
   const double natoms = library_.get_natoms(library_.handle);
   if (here != natoms)
-    fail(natoms - here, " of ", natoms, " grains left the box: close it with wall planes or boundary s or m");
+    fail(natoms - here, " of ", natoms, " grains left the box: close it with wall planes or boundary s or m, or take "
+         "a smaller timestep");
 }
 
 void ExternalFix::find_homes(const Grains &g)

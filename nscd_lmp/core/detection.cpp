@@ -48,18 +48,30 @@ NSCD_HOT void filter_pairs(State &s, const PairList &pairs)
   s.found_count = kept;
 }
 
-// Not a contact: a grain and its own image, two obstacles, or a pair that the list has a second time.
-bool is_void(const State &s, const Candidate &c, const PairList &pairs)
-{
-  const int i = s.owner[c.atom_i], j = s.owner[c.atom_j];
-  if (i == j || s.bodies[i][3] + s.bodies[j][3] == 0) return true;
-  return pairs.cross_pairs_twice && c.atom_j >= s.grains.owned && s.grains.tag[c.atom_i] > s.grains.tag[c.atom_j];
-}
-
 NSCD_INLINE double gap_of(const Sphere &a, const Sphere &b)
 {
   const Vec4 separation = a.centre - b.centre;
   return std::sqrt(dot(separation, separation)) - a.radius - b.radius;
+}
+
+// A grain can be no contact of itself, so a box that is narrower than a grain would hold an overlap that nothing sees.
+void refuse_narrow_box(const State &s, const Candidate &c)
+{
+  constexpr double touches = 1e-9;
+  const Sphere &grain = s.spheres[c.atom_i];
+  const double gap = gap_of(grain, s.spheres[c.atom_j]);
+  if (gap < -touches * grain.radius && s.bodies[s.owner[c.atom_i]][3] > 0)
+    fail("grain ", s.grains.tag[c.atom_i], " overlaps its own periodic image by ", -gap, ": the box must be wider than ",
+         "the grain's diameter ", 2 * grain.radius);
+}
+
+// Not a contact: a grain and its own image, two obstacles, or a pair that the list has a second time.
+bool is_void(const State &s, const Candidate &c, const PairList &pairs)
+{
+  const int i = s.owner[c.atom_i], j = s.owner[c.atom_j];
+  if (i == j) refuse_narrow_box(s, c);
+  if (i == j || s.bodies[i][3] + s.bodies[j][3] == 0) return true;
+  return pairs.cross_pairs_twice && c.atom_j >= s.grains.owned && s.grains.tag[c.atom_i] > s.grains.tag[c.atom_j];
 }
 
 // So that near[count] may be written; most scenes watch few pairs, and those that watch many come to hold them once.

@@ -56,7 +56,7 @@ void SceneChecks::require_all_grains()
   ranks_.sum({&here, 1});
   if (here != double(atom->natoms))
     nscd::fail(atom->natoms - bigint(here), " of ", atom->natoms,
-               " grains left the box: close it with wall planes or boundary s or m");
+               " grains left the box: close it with wall planes or boundary s or m, or take a smaller timestep");
 }
 
 void SceneChecks::require_sole_integrator()
