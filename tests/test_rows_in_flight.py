@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scenes import DOORS, grains, harden, state
@@ -19,7 +21,9 @@ def test_row_that_flies_as_one_throws_no_ball(start, door, n, ratio, options):
     v[:, 0] = 10
     v[0, 0], v[-1, 0] = 11, 9.5
     common = (mass * v[:, 0]).sum() / mass.sum()
-    lmp = start(grains([(2.02 * R * k, 0, 0) for k in range(n)], R, mass, v), DT, vmax=11, box=[(-1, 9), (-1, 1), (-1, 1)])
+    lmp = start(
+        grains([(2.02 * R * k, 0, 0) for k in range(n)], R, mass, v), DT, vmax=11, box=[(-1, 9), (-1, 1), (-1, 1)]
+    )
     harden(lmp, door, criterion="natural", unconverged="ignore", **options)
     energy, fastest = [], []
     for _ in range(12):
@@ -28,5 +32,5 @@ def test_row_that_flies_as_one_throws_no_ball(start, door, n, ratio, options):
         energy.append(0.5 * (mass * (now[:, 0] - common) ** 2).sum())
         fastest.append(np.abs(now[:, 0] - common).max())
     assert max(fastest) <= 1.0 * (1 + 1e-9)
-    assert all(later <= before * (1 + 1e-9) + 1e-9 for before, later in zip(energy, energy[1:], strict=False))
+    assert all(later <= before * (1 + 1e-9) + 1e-9 for before, later in pairwise(energy))
     assert fastest[-1] <= 1e-2

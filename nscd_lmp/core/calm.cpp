@@ -18,7 +18,9 @@ int grain_of(const State &s, const Contact &c) { return s.bodies[c.i][3] > 0 ? c
 
 void Calm::find_islands(const State &s, std::size_t count)
 {
+  of_.reserve(s.bodies.size());   // more islands need no more
   joined_.clear();
+  joined_.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
     const Contact &c = s.contacts[k];
     if (c.impulse > 0 && s.bodies[c.i][3] > 0 && s.bodies[c.j][3] > 0) joined_.push_back({c.i, c.j});

@@ -14,9 +14,6 @@ namespace {
 // Of velocities, squared: what round-off leaves of bodies' speeds, and of what impulses do to them, is no residual.
 constexpr double round_off2 = 1e-25;
 
-// With friction, of what a contact pushes: velocities are not determined to more than a share of that.
-constexpr double part_of_push2 = 0.1;
-
 NSCD_INLINE double speed2(const Body &b) { return b[0] * b[0] + b[1] * b[1] + b[2] * b[2]; }
 
 // Of squares.
@@ -61,7 +58,6 @@ NSCD_INLINE Residual frictional(const Problem &problem, const Contact &c, double
 template <class ResidualOf>
 NSCD_HOT Look look_at_contacts(const Problem &problem, ResidualOf residual_of)
 {
-  const double pushes = problem.sliding.model == Model::frictionless ? 0 : part_of_push2;
   std::vector<Joined> &joined = problem.workspace.joined;
   joined.resize(problem.contacts.size() + 1);
   Look look;
@@ -74,7 +70,7 @@ NSCD_HOT Look look_at_contacts(const Problem &problem, ResidualOf residual_of)
     const double w = 1 / c.w_inverse, push = w * c.impulse;
     const Residual residual = residual_of(c, w, k);
     const double left2 = look.add(info, residual.square, push, speed2(bi) + speed2(bj));
-    const double stake2 = info.free2 + info.kick * info.kick + pushes * push * push;
+    const double stake2 = info.free2 + info.kick * info.kick;
     joined[count] = {bi[3] > 0 ? c.i : c.j, bj[3] > 0 ? c.j : c.i, left2, stake2};
     count += (push > 0) | (residual.v < 0);   // no branch, which would be mispredicted
   }

@@ -187,6 +187,10 @@ bool is_met_by_sums(const Criterion &criterion, const Goal &goal)
 
 Criterion measure(const Problem &problem, const double *local_velocity)
 {
+  if (problem.judges_contacts) {   // a closer look may need them in any step
+    resize_closely(problem.workspace.joined, problem.contacts.size() + 1);
+    problem.workspace.islands.reserve(problem.bodies.size());
+  }
   Sums sum = sum_of(problem, local_velocity);
   double sums[] = {sum.of.motion, sum.of.bipotential, sum.of.penetration, sum.natural,
                    double(problem.contacts.size())};

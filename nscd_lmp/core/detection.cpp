@@ -61,8 +61,8 @@ void refuse_narrow_box(const State &s, const Candidate &c)
   const Sphere &grain = s.spheres[c.atom_i];
   const double gap = gap_of(grain, s.spheres[c.atom_j]);
   if (gap < -touches * grain.radius && s.bodies[s.owner[c.atom_i]][3] > 0)
-    fail("grain ", s.grains.tag[c.atom_i], " overlaps its own periodic image by ", -gap, ": the box must be wider than ",
-         "the grain's diameter ", 2 * grain.radius);
+    fail("grain ", s.grains.tag[c.atom_i], " overlaps its own periodic image by ", -gap, ": the box must be wider ",
+         "than the grain's diameter ", 2 * grain.radius);
 }
 
 // Not a contact: a grain and its own image, two obstacles, or a pair that the list has a second time.

@@ -39,12 +39,11 @@ void EnergyLimit::store(const State &s, std::size_t count, Motion &m) const
 {
   m.bodies = s.bodies;
   m.spins = s.friction.spins;
+  const bool slides = s.friction.model != Model::frictionless;
   m.normal.resize(count);
-  m.tangential.resize(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    m.normal[k] = s.contacts[k].impulse;
-    m.tangential[k] = tangential_impulse(s, k);
-  }
+  if (slides) m.tangential.resize(count);
+  for (std::size_t k = 0; k < count; ++k) m.normal[k] = s.contacts[k].impulse;
+  for (std::size_t k = 0; slides && k < count; ++k) m.tangential[k] = tangential_impulse(s, k);
 }
 
 void EnergyLimit::load(State &s, const Motion &motion) const
@@ -81,7 +80,10 @@ void EnergyLimit::load_blend(State &s, std::size_t count) const
 // By the contacts that push in first_ or in second_.
 void EnergyLimit::find_islands(const State &s, std::size_t count)
 {
+  for (std::vector<double> *of_islands : {&share_, &limit_, &at_first_, &at_second_, &half_way_})
+    of_islands->reserve(s.bodies.size());   // more islands need no more
   joined_.clear();
+  joined_.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
     const Contact &c = s.contacts[k];
     const bool pushes = first_.normal[k] != 0 || second_.normal[k] != 0;

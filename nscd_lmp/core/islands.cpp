@@ -8,6 +8,7 @@ namespace nscd {
 
 void Islands::begin(std::size_t bodies)
 {
+  reserve(bodies);
   parent_.resize(bodies);
   std::iota(parent_.begin(), parent_.end(), 0);
 }

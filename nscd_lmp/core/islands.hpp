@@ -28,6 +28,14 @@ class Islands {
     number(halo);
   }
 
+  // So that finding islands of so many bodies allocates nothing.
+  void reserve(std::size_t bodies)
+  {
+    parent_.reserve(bodies);
+    number_.reserve(bodies);
+    sums_.reserve(bodies);
+  }
+
   int count() const { return count_; }
   // The island of a grain.
   int of(int body) const { return number_[body]; }

@@ -151,13 +151,23 @@ TEST(a_grain_is_not_in_contact_with_its_own_image)
     Scene scene;
     scene.newton = newton;
     scene.add({0, 0, 0}, 1, 1, {1, 0, 0});
-    scene.add_image(0, {1.9, 0, 0});
-    scene.add_image(0, {-1.9, 0, 0});
+    scene.add_image(0, {2, 0, 0});
+    scene.add_image(0, {-2, 0, 0});
     scene.list_pairs({{1, 2}});
     Step step(settings("law moreau"));
     CHECK(scene.advance(step, instant).contacts == 0);
     CHECK(scene.v[0] == 1);
   }
+}
+
+TEST(a_box_narrower_than_a_grain_is_refused)
+{
+  Scene scene;
+  scene.add({0, 0, 0}, 1, 1);
+  scene.add_image(0, {1.9, 0, 0});
+  scene.list_pairs({{1}});
+  Step step(settings("law moreau"));
+  CHECK_ERROR(scene.advance(step, instant), "overlaps its own periodic image by 0.1");
 }
 
 // Two grains fill a periodic box of length 4: they touch on both sides.

@@ -54,10 +54,11 @@ struct Sizes {
   }
 };
 
-// Steady: nothing is more than in some step before, and no impact has to be kept from making energy, which is rare.
+// Steady: nothing is more than in some step before, of those that were given up if this one is, and no impulses have to
+// be kept from making energy, which is rare.
 static void check_steady_steps_allocate_nothing(Scene scene, Step &step, const Point &gravity, std::size_t contacts)
 {
-  Sizes most;
+  Sizes most, most_given_up;
   int steady_steps = 0;
   for (int k = 0; k < 300; ++k) {
     const std::size_t before = heap().allocations;
@@ -66,10 +67,13 @@ static void check_steady_steps_allocate_nothing(Scene scene, Step &step, const P
     scene.advance(step, 0.01);
     const std::size_t after = heap().allocations;
     const Sizes now(step.state());
-    const bool steady = k >= 150 && now.within(most) && step.report().energy_limited == limited;
+    const bool given_up = !step.report().converged;
+    const bool as_before = now.within(most) && (!given_up || now.within(most_given_up));
+    const bool steady = k >= 170 && as_before && step.report().energy_limited == limited;
     if (steady) CHECK(after == before);
     steady_steps += steady;
     most.widen(now);
+    if (given_up) most_given_up.widen(now);
   }
   CHECK(most.contacts > contacts);
   CHECK(steady_steps > 80);
@@ -154,25 +158,27 @@ static double bytes_per_contact(const std::string &keywords, int dimension = 3)
   return most;
 }
 
-// Contacts, their infos, the hash table of the warm start, the workspace of the solver and of the law, with what
-// vectors and table hold in reserve.
-TEST(a_contact_takes_at_most_200_bytes)
+static const std::string solved = " criterion paper tol 1e3";   // whatever sweeps do
+
+// Contacts, their infos with what each has at stake, the hash table of the warm start, the workspace of the solver and
+// of the law, with what vectors and table hold in reserve.
+TEST(a_contact_takes_at_most_260_bytes)
 {
   for (const auto &law : nscd::laws())
-    CHECK(bytes_per_contact("solver ebp restitution 0.5 law " + std::string(law.name)) <= 200);
+    CHECK(bytes_per_contact("solver ebp restitution 0.5 law " + std::string(law.name) + solved) <= 260);
 }
 
 // Beside these the slides, 24 or 64 bytes, and longer entries of the warm start. Impacts under law gap, and e != e_t,
 // which could make energy, keep impulses a second time. A step that is given up is kept from making energy by copies of
-// the motion, of which there is one grain a contact here.
-TEST(a_contact_with_friction_takes_at_most_400_bytes_in_the_plane_and_600_in_space)
+// the motion and by its islands, of which there is one grain a contact here.
+TEST(a_contact_with_friction_takes_at_most_420_bytes_in_the_plane_and_600_in_space)
 {
   for (const auto &law : nscd::laws())
     for (const char *impacts : {"", " restitution 0.5"}) {
       const std::string words = "friction 0.5 solver ebp law " + std::string(law.name) + impacts;
-      CHECK(bytes_per_contact(words + " tol 1e3", 2) <= 400);
-      CHECK(bytes_per_contact(words + " tol 1e3", 3) <= 600);
-      CHECK(bytes_per_contact(words, 2) <= 640);
-      CHECK(bytes_per_contact(words, 3) <= 800);
+      CHECK(bytes_per_contact(words + solved, 2) <= 420);
+      CHECK(bytes_per_contact(words + solved, 3) <= 600);
+      CHECK(bytes_per_contact(words, 2) <= 860);
+      CHECK(bytes_per_contact(words, 3) <= 1040);
     }
 }
