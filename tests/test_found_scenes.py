@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import random_runs
+from random_scenes import Scene
 from scenes import DOORS, FLOOR, GRAVITY, grains, harden, per_atom, state, trajectory
 
 import nscd_lmp
@@ -80,3 +82,14 @@ def test_grain_in_a_corner_makes_no_energy_while_others_dissipate(start, door, l
     lmp.command("run 1")
     after = 0.2 * RADIUS**2 * (per_atom(lmp, "omega")[0] ** 2).sum() + 0.5 * (state(lmp)[1][0] ** 2).sum()
     assert after <= (0.5 * (balls.v[0] ** 2).sum() + spin) * (1 + 1e-8)
+
+
+@BOTH
+def test_contacts_that_do_not_push_connect_no_islands(door):
+    # a slow column was judged by what a fast grain beside it had at stake, and thrown at twice its speed
+    scene = Scene(
+        n=31, seed=88, sizes=50.0, masses=1e6, layout="columns", room="loose", speed=10.0, turns=False,
+        boundary="p p f", tilt=0.0, gravity=False, pushes=(), obstacles=0, move="stands", grows=0.0, deforms="",
+        e=0.9, mu=0.3, law="gap", dt=1e-3, steps=3, tight=False,
+    )  # fmt: skip
+    random_runs.run(scene, door)

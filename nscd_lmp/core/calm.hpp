@@ -25,6 +25,7 @@ class Calm {
  private:
   struct Joined {
     std::int32_t i, j;
+    bool connects() const { return true; }
   };
   struct Island {
     double mass = 0, energy = 0;   // kg, J

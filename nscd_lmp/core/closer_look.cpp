@@ -71,7 +71,7 @@ NSCD_HOT Look look_at_contacts(const Problem &problem, ResidualOf residual_of)
     const Residual residual = residual_of(c, w, k);
     const double left2 = look.add(info, residual.square, push, speed2(bi) + speed2(bj));
     const double stake2 = info.free2 + info.kick * info.kick;
-    joined[count] = {bi[3] > 0 ? c.i : c.j, bj[3] > 0 ? c.j : c.i, left2, stake2};
+    joined[count] = {bi[3] > 0 ? c.i : c.j, bj[3] > 0 ? c.j : c.i, left2, push > 0 ? stake2 : -1};
     count += (push > 0) | (residual.v < 0);   // no branch, which would be mispredicted
   }
   joined.resize(count);
@@ -99,7 +99,10 @@ NSCD_HOT double worst_island(const Problem &problem)
   Workspace &w = problem.workspace;
   w.islands.find(problem.bodies.size(), w.joined, problem.halo);
   w.islands.clear_sums();
-  for (const Joined &contact : w.joined) w.islands.add(contact.i, {contact.residual2, contact.stake2});
+  for (const Joined &contact : w.joined) {
+    w.islands.add(contact.i, {contact.residual2, std::max(0.0, contact.stake2)});
+    if (!contact.connects()) w.islands.add(contact.j, {contact.residual2, 0});
+  }
   if (problem.halo) problem.halo->sum(w.islands.sum(0));
   double worst = 0;
   for (int island = 0; island < w.islands.count(); ++island) {

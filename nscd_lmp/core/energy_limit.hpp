@@ -49,6 +49,7 @@ class EnergyLimit {
 
   struct Joined {
     std::int32_t i, j;
+    bool connects() const { return true; }
   };
   Motion before_, first_, second_;
   Islands islands_;

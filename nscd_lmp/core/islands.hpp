@@ -18,13 +18,14 @@ class Islands {
   // What is summed up over an island.
   using Sums = std::array<double, 2>;
 
-  // Pairs connect the bodies .i and .j, two grains; obstacles connect nothing and are in no pair. On several ranks
-  // number 0 is what reaches across ranks.
+  // Pairs connect the bodies .i and .j, two grains, if .connects(); obstacles connect nothing and are in no pair. On
+  // several ranks number 0 is what reaches across ranks.
   template <class Pairs>
   void find(std::size_t bodies, const Pairs &pairs, const Halo *halo)
   {
     begin(bodies);
-    for (const auto &pair : pairs) connect(pair.i, pair.j);
+    for (const auto &pair : pairs)
+      if (pair.connects()) connect(pair.i, pair.j);
     number(halo);
   }
 

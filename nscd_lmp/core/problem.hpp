@@ -12,10 +12,12 @@
 
 namespace nscd {
 
-// A contact that does something, as its island sees it: two grains, or a grain twice, and (m/s)^2.
+// A contact that pushes, or would have to, as its island sees it: two grains, or a grain twice, and (m/s)^2.
 struct Joined {
   std::int32_t i, j;
-  double residual2, stake2;
+  double residual2;
+  double stake2;   // negative: it does not push, so it connects nothing, and is off in both of its islands
+  bool connects() const { return stake2 >= 0; }
 };
 
 // A solver's own unknowns; kept between steps, so a steady step allocates nothing.

@@ -33,9 +33,10 @@ static Scene flat_bed(Random &random)
 
 // How much there was of all that a step keeps.
 struct Sizes {
-  std::size_t contacts = 0, watched = 0, pairs = 0, impacts = 0;
+  std::size_t contacts = 0, watched = 0, pairs = 0, impacts = 0, found = 0;
   explicit Sizes(const nscd::State &state) :
-      contacts(state.contacts.size()), watched(state.near.size()), impacts(state.impact_impulse.size())
+      contacts(state.contacts.size()), watched(state.near.size()), impacts(state.impact_impulse.size()),
+      found(state.found_count)
   {
     for (const auto &info : state.infos) pairs += info.atom_j >= 0;
     for (const auto &near : state.near) pairs += near.pair.atom_j >= 0;
@@ -43,7 +44,8 @@ struct Sizes {
   Sizes() = default;
   bool within(const Sizes &s) const
   {
-    return contacts <= s.contacts && watched <= s.watched && pairs <= s.pairs && impacts <= s.impacts;
+    return contacts <= s.contacts && watched <= s.watched && pairs <= s.pairs && impacts <= s.impacts &&
+        found <= s.found;
   }
   void widen(const Sizes &s)
   {
@@ -51,6 +53,7 @@ struct Sizes {
     watched = std::max(watched, s.watched);
     pairs = std::max(pairs, s.pairs);
     impacts = std::max(impacts, s.impacts);
+    found = std::max(found, s.found);
   }
 };
 
