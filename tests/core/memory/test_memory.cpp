@@ -33,10 +33,11 @@ static Scene flat_bed(Random &random)
 
 // How much there was of all that a step keeps.
 struct Sizes {
-  std::size_t contacts = 0, watched = 0, pairs = 0, impacts = 0, found = 0;
+  std::size_t contacts = 0, watched = 0, pairs = 0, impacts = 0;
+  std::size_t room = 0;   // for watched pairs, of which there are most ahead of the solve
   explicit Sizes(const nscd::State &state) :
       contacts(state.contacts.size()), watched(state.near.size()), impacts(state.impact_impulse.size()),
-      found(state.found_count)
+      room(state.near.capacity())
   {
     for (const auto &info : state.infos) pairs += info.atom_j >= 0;
     for (const auto &near : state.near) pairs += near.pair.atom_j >= 0;
@@ -45,7 +46,7 @@ struct Sizes {
   bool within(const Sizes &s) const
   {
     return contacts <= s.contacts && watched <= s.watched && pairs <= s.pairs && impacts <= s.impacts &&
-        found <= s.found;
+        room <= s.room;
   }
   void widen(const Sizes &s)
   {
@@ -53,7 +54,7 @@ struct Sizes {
     watched = std::max(watched, s.watched);
     pairs = std::max(pairs, s.pairs);
     impacts = std::max(impacts, s.impacts);
-    found = std::max(found, s.found);
+    room = std::max(room, s.room);
   }
 };
 
