@@ -7,15 +7,6 @@
 
 namespace nscd {
 
-namespace {
-
-double speed2(const Vec4 &v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
-
-// A grain of the contact.
-int grain_of(const State &s, const Contact &c) { return s.bodies[c.i][3] > 0 ? c.i : c.j; }
-
-}    // namespace
-
 void Calm::find_islands(const State &s, std::size_t count)
 {
   of_.reserve(s.bodies.size());   // more islands need no more
@@ -42,7 +33,7 @@ void Calm::find_drives(const State &s, std::size_t count)
 {
   for (std::size_t k = 0; k < count; ++k) {
     const Contact &c = s.contacts[k];
-    Island &island = of_[islands_.of(grain_of(s, c))];
+    Island &island = of_[islands_.of(grain_of(c, s.bodies.data()))];
     for (const int b : {c.i, c.j})
       if (s.bodies[b][3] == 0) island.closing = std::max(island.closing, std::sqrt(speed2(s.bodies[b])));
     island.closing = std::max(island.closing, std::abs(normal_drift(s, k)));
@@ -62,7 +53,7 @@ void Calm::find_jams(const State &s, std::size_t count)
   constexpr double part = 0.1, far_harder = 100;
   for (std::size_t k = 0; k < count; ++k) {
     const Contact &c = s.contacts[k];
-    Island &island = of_[islands_.of(grain_of(s, c))];
+    Island &island = of_[islands_.of(grain_of(c, s.bodies.data()))];
     const double v = normal_velocity(c, s.bodies.data()) + normal_drift(s, k), push = c.impulse / c.w_inverse;
     island.jammed |= island.closing > 0 && v < -part * island.closing && push > far_harder * island.drive;
   }

@@ -23,10 +23,6 @@ class Calm {
   Found slow_down(State &state, std::size_t count);
 
  private:
-  struct Joined {
-    std::int32_t i, j;
-    bool connects() const { return true; }
-  };
   struct Island {
     double mass = 0, energy = 0;   // kg, J
     double drive = 0, closing = 0;   // m/s: of all that drives it, and of what is no grain
@@ -38,7 +34,7 @@ class Calm {
   double slow_down(State &state) const;
 
   Islands islands_;
-  std::vector<Joined> joined_;
+  std::vector<Islands::Pair> joined_;
   std::vector<Island> of_;
 };
 

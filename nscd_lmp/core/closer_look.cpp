@@ -14,8 +14,6 @@ namespace {
 // Of velocities, squared: what round-off leaves of bodies' speeds, and of what impulses do to them, is no residual.
 constexpr double round_off2 = 1e-25;
 
-NSCD_INLINE double speed2(const Body &b) { return b[0] * b[0] + b[1] * b[1] + b[2] * b[2]; }
-
 // Of squares.
 struct Look {
   double of_kicks2 = 0, worst2 = 0;

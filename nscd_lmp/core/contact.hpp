@@ -64,6 +64,12 @@ inline double dot(const Vec4 &a, const Vec4 &b)
   return (c[0] + c[1]) + (c[2] + c[3]);
 }
 
+// Square of a body's speed, (m/s)^2.
+inline double speed2(const Vec4 &v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
+
+// A grain of the contact; the other body may be an obstacle.
+inline int grain_of(const Contact &c, const Body *bodies) { return bodies[c.i][3] > 0 ? c.i : c.j; }
+
 // Asks for what a visit of the contact will need of its bodies: where they do not fit the cache, a sweep would wait for
 // each of them.
 inline void fetch_bodies(const Contact &c, const Body *bodies)

@@ -11,9 +11,6 @@ namespace nscd {
 
 namespace {
 
-// A grain of the contact.
-int grain_of(const State &s, const Contact &c) { return s.bodies[c.i][3] > 0 ? c.i : c.j; }
-
 // Of what there is but the contacts' own drift.
 void clear_biases(State &s, std::size_t count)
 {
@@ -66,7 +63,7 @@ void EnergyLimit::load_blend(State &s, std::size_t count) const
     s.bodies[i] = mix(first_.bodies[i], second_.bodies[i], share);
     if (!first_.spins.empty()) s.friction.spins[i] = mix(first_.spins[i], second_.spins[i], share);
   }
-  const auto share_of = [&](std::size_t k) { return share_[islands_.of(grain_of(s, s.contacts[k]))]; };
+  const auto share_of = [&](std::size_t k) { return share_[islands_.of(grain_of(s.contacts[k], s.bodies.data()))]; };
   for (std::size_t k = 0; k < count; ++k)
     s.contacts[k].impulse = mix(first_.normal[k], second_.normal[k], share_of(k));
   with_friction(s.friction.model, [&]<class M>(M) {
@@ -103,7 +100,7 @@ void EnergyLimit::find_work(const State &s, std::size_t count, const Motion *bef
     const double first = before ? normal_velocity(c, before->bodies.data()) + normal_drift(s, k)
                                 : s.infos[k].speed_before;
     const double after = normal_velocity(c, s.bodies.data()) + normal_drift(s, k);
-    work[islands_.of(grain_of(s, c))] += 0.5 * c.impulse * (first + after);
+    work[islands_.of(grain_of(c, s.bodies.data()))] += 0.5 * c.impulse * (first + after);
   }
   with_friction(s.friction.model, [&]<class M>(M) {
     for (std::size_t k = 0; k < count; ++k) {
@@ -117,7 +114,7 @@ void EnergyLimit::find_work(const State &s, std::size_t count, const Motion *bef
         twice += (before ? 2 : 1) * c.impulse * normal_drift(s, k);   // speed_before has it
         twice += 2 * inner(s.friction.slides<M>()[k].impulse, tangential_drift<M>(s, k));
       }
-      work[islands_.of(grain_of(s, c))] += 0.5 * twice;
+      work[islands_.of(grain_of(c, s.bodies.data()))] += 0.5 * twice;
     }
   });
   if (s.halo) work[0] = s.halo->sum(work[0]);
@@ -132,7 +129,8 @@ bool EnergyLimit::find_excess(State &s, std::size_t count, const Motion *before)
   limit_.assign(islands_.count(), 0);
   for (std::size_t k = 0; k < count; ++k) {
     const Contact &c = s.contacts[k];
-    limit_[islands_.of(grain_of(s, c))] += tolerances * tolerance(s, worth(s.infos[k])) * std::abs(c.impulse);
+    const double error = tolerances * tolerance(s, worth(s.infos[k])) * std::abs(c.impulse);
+    limit_[islands_.of(grain_of(c, s.bodies.data()))] += error;
   }
   if (s.halo) limit_[0] = s.halo->sum(limit_[0]);
   bool any = false;

@@ -47,13 +47,9 @@ class EnergyLimit {
   bool limit_restitution(State &state, std::size_t count, From from, const std::function<bool()> &solver);
   bool limit_unsolved(State &state, std::size_t count);
 
-  struct Joined {
-    std::int32_t i, j;
-    bool connects() const { return true; }
-  };
   Motion before_, first_, second_;
   Islands islands_;
-  std::vector<Joined> joined_;
+  std::vector<Islands::Pair> joined_;
   // One an island: shares of second_, and work, J: what is the solver's own error, and what first_, second_ and their
   // mean make.
   std::vector<double> share_, limit_, at_first_, at_second_, half_way_;

@@ -15,6 +15,10 @@ class Halo;
 
 class Islands {
  public:
+  struct Pair {
+    std::int32_t i, j;
+    bool connects() const { return true; }
+  };
   // What is summed up over an island.
   using Sums = std::array<double, 2>;
 

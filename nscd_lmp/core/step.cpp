@@ -1,6 +1,7 @@
 #include "step.hpp"
 
 #include "across_ranks.hpp"
+#include "approach_bound.hpp"
 #include "closer_look.hpp"
 #include "detection.hpp"
 #include "error.hpp"
@@ -8,7 +9,6 @@
 #include "hot.hpp"
 #include "plane.hpp"
 #include "slides.hpp"
-#include "approach_bound.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -16,8 +16,6 @@ double rounded_up(double value)
   return std::ceil(value / digit * (1 - 1e-9)) * digit;
 }
 
-double speed2(const Body &b) { return b[0] * b[0] + b[1] * b[1] + b[2] * b[2]; }
-
 // The longest way of a body of this rank or a copy, by displacement or dt v_{k+1}.
 double farthest_solved(const State &s)
 {

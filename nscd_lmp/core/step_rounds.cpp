@@ -1,8 +1,8 @@
 // The rounds of a step: solve, see where grains go, and go on with the pairs that are driven together.
 #include "step.hpp"
 
-#include "slides.hpp"
 #include "approach_bound.hpp"
+#include "slides.hpp"
 
 #include <algorithm>
 
@@ -37,7 +37,6 @@ void Step::begin_rounds()
   report_.converged = true;
   energy_limited_ = false;
   state_.impact_impulse.clear();
-  state_.per_approach.clear();
   state_.friction.impact_impulse.clear();
   place_slides(state_, 0);
   if (halo_) halo_->share_contacts(state_);
@@ -107,7 +106,6 @@ void Step::resolve_impacts_first(bool again)
     state_.friction.spins = free_spins_;
     place_slides(state_, 0);
   }
-  state_.per_approach.clear();
   for (Contact &c : state_.contacts) c.impulse = 0;
   law_->impacts(state_, [this](std::size_t count) {
     const double norm = keep_free_velocities(state_, 0, count);
