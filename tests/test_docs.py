@@ -98,6 +98,8 @@ def test_readme_demo_runs(tmp_path: Path) -> None:
     last = command("demo").split(" && ")[-1].replace(".venv/bin/", "")
     run(Block(0, None, None, "bash", last), tmp_path, "README.md, command demo")
     assert list(tmp_path.rglob("*.png")), "no picture"
+    (log,) = tmp_path.rglob("log.sedimentation")
+    assert "WARNING" not in log.read_text()
 
 
 def test_ci_runs_the_second_command(tmp_path: Path) -> None:
