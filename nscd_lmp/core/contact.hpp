@@ -5,6 +5,8 @@
 // and obstacles (walls, atoms outside the group) are bodies of infinite mass, so the loop has no branches.
 #pragma once
 
+#include "hot.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -56,7 +58,7 @@ struct ContactInfo {
 
 // What the velocities of a contact are worth, m/s: what forces give its grains in a step or, where none act, a small
 // part of the speed at which they meet.
-inline double worth(const ContactInfo &info) { return std::max(info.kick, 1e-3 * std::abs(info.speed_before)); }
+NSCD_INLINE double worth(const ContactInfo &info) { return std::max(info.kick, 1e-3 * std::abs(info.speed_before)); }
 
 inline double dot(const Vec4 &a, const Vec4 &b)
 {

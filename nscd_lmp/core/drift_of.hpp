@@ -36,7 +36,7 @@ NSCD_INLINE typename M::Tangent tangential_drift(const State &s, std::size_t k)
 }
 
 // At which a contact may give back what radii and box have done suddenly, m/s.
-inline double sudden_approach(const State &s, std::size_t k)
+NSCD_INLINE double sudden_approach(const State &s, std::size_t k)
 {
   const ContactInfo &info = s.infos[k];
   double approach = 0;

@@ -85,57 +85,77 @@ class Outlook {
   Least least_{}, least_before_{};
 };
 
-// When to look again at what single contacts or small islands have left over: it falls about geometrically.
-class Forecast {
+// When to measure the criterion, which costs about a sweep: rarely far from convergence, but so that the sweeps hardly
+// overshoot. All times are sweeps.
+class Looks {
  public:
-  // After a look at sweep s; `excess` is how many times too large the worst of them is.
-  int next(int s, double excess)
+  // `above`: as surely_above has it. The paper counts the visits of a few contacts, so its criterion is taken after each
+  // of the first.
+  Looks(double above, Stop stop) : above_(above), always_(stop == Stop::paper ? 4 : 1) {}
+
+  bool is_due(int s, double corrected) const
+  {
+    return s <= always_ || corrected <= (s >= latest_ ? above_ : enough_);
+  }
+
+  // After a look at sweep s, whose worst is `excess` times too large. What all contacts have left over goes with what
+  // sweeps correct.
+  void were_all_off(int s, double corrected, double excess)
+  {
+    constexpr double above_goal = 1.3;   // what is left over falls faster than corrections at times
+    enough_ = std::min(above_, above_goal * corrected / excess);
+    latest_ = s + 1 + s / 4;
+  }
+
+  // The same where single contacts or small islands are what is left: sweeps do not show it. It falls about
+  // geometrically.
+  void were_some_off(int s, double excess)
   {
     const double left = std::log(excess), a_sweep = (left_before_ - left) / (s - before_);
     const double rest = a_sweep > 0 ? left / a_sweep : INFINITY;
     left_before_ = left;
     before_ = s;
-    return s + 1 + int(std::clamp(0.75 * rest - 1, s / 64.0, s / 8.0));
+    latest_ = s + 1 + int(std::clamp(0.75 * rest - 1, s / 64.0, s / 8.0));
+    enough_ = 0;
   }
 
  private:
-  double left_before_ = INFINITY;
-  int before_ = 0;
+  const double above_;
+  const int always_;
+  double enough_ = 0, left_before_ = INFINITY;
+  int latest_ = 1, before_ = 0;
 };
 
 // `once()` sweeps and returns the sum over the contacts of the velocity that each visit corrected, m/s; `look()`
-// measures. The criterion costs a pass of its own, so far from convergence it is not taken; close to it the passes are
-// spread so that the count overshoots by < 2 %; where the sums over all contacts are met and only single contacts or
-// islands are not, they come when these are foreseen to be.
+// measures.
 template <class Sweep, class Look>
 SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep once, Look look)
 {
-  constexpr int always_checked = 4;
   SolverReport report;
   if (extent.contacts == 0) return report;
   const double above = surely_above(extent, options);
   Outlook outlook(options.alternative, above / 4);
   RunAway run_away(above);
-  Forecast forecast;
-  int next_check = 0;
+  Looks looks(above, options.stop);
   report.converged = false;
   for (int s = 1; s <= options.maxiter && !report.converged; ++s) {
     const double corrected = once();
     run_away.look(corrected);
     report.iterations = s;
     const bool last = s == options.maxiter || outlook.is_worse_than_alternative(corrected);
-    const bool close = !(corrected > above) && s >= next_check;
-    if (s > always_checked && !close && !last) continue;
+    if (!looks.is_due(s, corrected) && !last) continue;
     report.criterion = look();
     report.converged = solved(report.criterion, options);
     report.ran_away = run_away.has_happened();
     if (options.history) options.history->push_back(report);
     if (last || report.ran_away) break;
-    // Where all is well on the whole, an island may be left that is worth less.
-    if (options.stop == Stop::natural && is_met_by_sums(report.criterion, options.goal()))
-      outlook.aim(corrected * options.tol / report.criterion.island);
-    const bool only_some = is_met_by_sums(report.criterion, options.goal());
-    next_check = only_some ? forecast.next(s, excess(report.criterion, options)) : s + 1 + s / 64;
+    const double over = excess(report.criterion, options);
+    if (!is_met_by_sums(report.criterion, options.goal())) {
+      looks.were_all_off(s, corrected, over);
+      continue;
+    }
+    if (options.stop == Stop::natural) outlook.aim(corrected * options.tol / report.criterion.island);
+    looks.were_some_off(s, over);
   }
   return report;
 }

@@ -44,6 +44,16 @@ NSCD_HOT double keep_free_velocities_of(State &s, std::size_t first, std::size_t
   return sum;
 }
 
+NSCD_HOT double keep_free_normal_velocities(State &s, std::size_t first, std::size_t last)
+{
+  double sum = 0;
+  for (std::size_t k = first; k < last; ++k) {
+    const double v = normal_velocity(s.contacts[k], s.bodies.data()) + s.contacts[k].bias;
+    sum += s.infos[k].free2 = v * v;
+  }
+  return sum;
+}
+
 template <class M>
 NSCD_HOT double tangential_work_of(const State &s)
 {
@@ -73,10 +83,7 @@ double keep_free_velocities(State &s, std::size_t first, std::size_t last)
 {
   double sum = 0;
   with_friction(s.friction.model, [&]<class M>(M) { sum = keep_free_velocities_of<M>(s, first, last); });
-  for (std::size_t k = first; k < last && s.friction.model == Model::frictionless; ++k) {
-    const double v = normal_velocity(s.contacts[k], s.bodies.data()) + s.contacts[k].bias;
-    sum += s.infos[k].free2 = v * v;
-  }
+  if (s.friction.model == Model::frictionless) sum = keep_free_normal_velocities(s, first, last);
   return std::sqrt(sum_everywhere(s, sum));
 }
 

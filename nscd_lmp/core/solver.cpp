@@ -39,8 +39,8 @@ bool solved(const Criterion &criterion, const SolverOptions &options)
 
 double excess(const Criterion &criterion, const SolverOptions &options)
 {
-  if (options.stop == Stop::paper) return criterion.approach;
-  return std::max({criterion.approach, criterion.worst / off_of_solved, criterion.island / options.tol});
+  const double worst = options.stop == Stop::paper ? 0 : criterion.worst / off_of_solved;
+  return std::max({criterion.approach, worst, judged(criterion, options) / options.tol});
 }
 
 }    // namespace nscd

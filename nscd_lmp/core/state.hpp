@@ -117,10 +117,10 @@ struct State {
 inline Way way(const State &s, int body) { return s.ways.empty() ? Way::has_moved : s.ways[body]; }
 
 // What a solved step leaves of a contact's velocity in error, m/s.
-inline double tolerance(const State &s, double worth) { return s.tol_of_worth * worth + s.tol_absolute; }
+NSCD_INLINE double tolerance(const State &s, double worth) { return s.tol_of_worth * worth + s.tol_absolute; }
 
 // What a solved step leaves of an overlap, m; `radius` of the smaller grain.
-inline double left_of_overlap(const State &s, double worth, double radius)
+NSCD_INLINE double left_of_overlap(const State &s, double worth, double radius)
 {
   const double left = tolerances * tolerance(s, worth) * s.dt;
   return s.settings.overlap ? std::min(left, *s.settings.overlap * radius) : left;

@@ -37,29 +37,7 @@ namespace {
 constexpr double recovery_cap = 0.1;   // of the grains' smooth velocity change
 constexpr double tolerated_overlap = 3e-5;   // of the smaller radius, with friction
 
-class Gap final : public Law {
- public:
-  bool looks_ahead() const override { return true; }
-  bool resolves_impacts(const Settings &settings) const override
-  {
-    return settings.restitution > 0 || settings.e_t > 0;
-  }
-  void impacts(State &s, const SolvePart &solve) override { resolve_impacts(s, solve); }
-  void set_bias(State &s, std::size_t first) override;
-  void displace(State &s) override;
-
- private:
-  double rate(const State &s, std::size_t k) const;
-  bool is_open(const State &s, std::size_t k, double rate) const;
-  bool open_contact(const State &s, std::uint32_t k);
-  void open_contacts(const State &s);
-
-  AlignedVector<Vec4> mean_;      // per body: midpoint velocity, or v_{k+1} where that is needed
-  std::vector<char> final_;      // per body: moves with v_{k+1}
-  std::vector<std::uint32_t> suspects_;   // contacts that may be driven into overlap
-};
-
-void Gap::set_bias(State &s, std::size_t first)
+NSCD_HOT void set_biases(State &s, std::size_t first)
 {
   const double rate = 1 / s.dt, back = s.settings.recovery / s.dt;
   const double tolerated = s.friction.model == Model::frictionless ? 0.0 : tolerated_overlap;
@@ -71,15 +49,37 @@ void Gap::set_bias(State &s, std::size_t first)
   }
 }
 
+class Gap final : public Law {
+ public:
+  bool looks_ahead() const override { return true; }
+  bool resolves_impacts(const Settings &settings) const override
+  {
+    return settings.restitution > 0 || settings.e_t > 0;
+  }
+  void impacts(State &s, const SolvePart &solve) override { resolve_impacts(s, solve); }
+  void set_bias(State &s, std::size_t first) override { set_biases(s, first); }
+  void displace(State &s) override;
+
+ private:
+  NSCD_INLINE double rate(const State &s, std::size_t k) const;
+  NSCD_INLINE bool is_open(const State &s, std::size_t k, double rate) const;
+  bool open_contact(const State &s, std::uint32_t k);
+  void open_contacts(const State &s);
+
+  AlignedVector<Vec4> mean_;      // per body: midpoint velocity, or v_{k+1} where that is needed
+  std::vector<char> final_;      // per body: moves with v_{k+1}
+  std::vector<std::uint32_t> suspects_;   // contacts that may be driven into overlap
+};
+
 // Rate at which the contact's gap changes as its bodies move now, m/s.
-double Gap::rate(const State &s, std::size_t k) const
+NSCD_INLINE double Gap::rate(const State &s, std::size_t k) const
 {
   const Contact &c = s.contacts[k];
   return dot(c.normal, mean_[c.i] - mean_[c.j]) + normal_drift(s, k);
 }
 
 // Whether the contact is left with no more overlap than the solver's tolerance leaves anyway.
-bool Gap::is_open(const State &s, std::size_t k, double rate) const
+NSCD_INLINE bool Gap::is_open(const State &s, std::size_t k, double rate) const
 {
   const ContactInfo &info = s.infos[k];
   return !(info.gap + s.dt * rate < -left_of_overlap(s, worth(info), info.radius));
