@@ -28,9 +28,10 @@ class SplitMasses {
   Problem &problem_;
 };
 
-// The criterion with true masses.
-inline Criterion measure_across(Problem &problem, const double *carried = nullptr)
+// The criterion with true masses; single contacts and islands are looked at where the sums meet the goal.
+inline Criterion measure_across(Problem &problem, const Goal &goal, const double *carried = nullptr)
 {
+  problem.goal = goal;
   if (!problem.halo) return measure(problem, carried);
   problem.halo->join(problem);
   const Criterion seen = measure(problem, carried);
@@ -75,7 +76,7 @@ SolverReport solve_by_ranks(Problem &problem, const SolverOptions &options, Solv
     change_across(problem.halo, problem.bodies, problem.sliding.spins, [&] { problem.halo->together(solve); });
     return 0.0;   // always worth a look
   };
-  return iterate(extent(problem), options, once, [&] { return measure_across(problem); });
+  return iterate(extent(problem), options, once, [&](const Goal &goal) { return measure_across(problem, goal); });
 }
 
 }    // namespace nscd

@@ -119,7 +119,7 @@ void look_closer(const Problem &problem, Criterion &seen)
   if (problem.halo) problem.halo->sum(sums);
   seen.worst = std::sqrt(problem.halo ? problem.halo->max(look.worst2) : look.worst2);
   seen.typical = sums[1] > 0 ? std::sqrt(sums[0] / sums[1]) : 0;
-  if (seen.worst > off_of_solved || !problem.judges_islands) return;
+  if (seen.worst > problem.goal.worst || !problem.judges_islands) return;
   seen.island = std::max(seen.relative, worst_island(problem));
 }
 

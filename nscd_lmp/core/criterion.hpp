@@ -23,9 +23,6 @@
 
 namespace nscd {
 
-// By the natural map no contact of a solved problem is off by more than this share of what it has at stake.
-constexpr double off_of_solved = 0.1;
-
 struct Criterion {
   double motion = 0;
   double bipotential = 0;

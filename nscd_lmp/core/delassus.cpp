@@ -201,7 +201,7 @@ SolverReport solve_assembled(Problem &grains, const SolverOptions &options,
     asked.maxiter -= done.iterations;
     const bool only_some = done.converged && is_met_by_sums(report.criterion, options.goal());
     if (report.converged || !only_some || report.at_round_off || asked.maxiter < 1) break;
-    asked.tol *= 0.1 / std::max(1.0, excess(report.criterion, options));
+    asked.tol *= 0.1 / std::max(1.0, excess(report.criterion, options.goal()));
   }
   return report;
 }

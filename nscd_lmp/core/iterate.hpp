@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 namespace nscd {
 
@@ -85,17 +86,30 @@ class Outlook {
   Least least_{}, least_before_{};
 };
 
-// When to measure the criterion, which costs about a sweep: rarely far from convergence, but so that the sweeps hardly
-// overshoot. All times are sweeps.
+// When to measure the criterion, which costs about half a sweep: rarely far from convergence, but so that the sweeps
+// hardly overshoot. All times are sweeps.
 class Looks {
  public:
   // `above`: as surely_above has it. The paper counts the visits of a few contacts, so its criterion is taken after each
   // of the first.
-  Looks(double above, Stop stop) : above_(above), always_(stop == Stop::paper ? 4 : 1) {}
+  Looks(double above, const SolverOptions &options) :
+      above_(above), always_(options.stop == Stop::paper ? 4 : 1), budget_(options.budget)
+  {
+  }
+
+  // Iterates that do not get better all the time are looked at in fixed intervals too, whatever there is to be seen, so
+  // that the best of them is known. More sweeps look at what fewer look at.
+  void at_intervals() { interval_ = 2; }
 
   bool is_due(int s, double corrected) const
   {
-    return s <= always_ || corrected <= (s >= latest_ ? above_ : enough_);
+    return s <= always_ || s == interval_ || s == budget_ || corrected <= (s >= latest_ ? above_ : enough_);
+  }
+
+  // After any look.
+  void have_looked(int s)
+  {
+    if (s == interval_) interval_ += std::max(1, s / (s < 32 ? 3 : 8));
   }
 
   // After a look at sweep s, whose worst is `excess` times too large. What all contacts have left over goes with what
@@ -103,7 +117,8 @@ class Looks {
   void were_all_off(int s, double corrected, double excess)
   {
     constexpr double above_goal = 1.3;   // what is left over falls faster than corrections at times
-    enough_ = std::min(above_, above_goal * corrected / excess);
+    enough_ = above_goal * corrected / excess;
+    if (s < budget_ || budget_ == 0) enough_ = std::min(enough_, above_);
     latest_ = s + 1 + s / 4;
   }
 
@@ -121,42 +136,69 @@ class Looks {
 
  private:
   const double above_;
-  const int always_;
+  const int always_, budget_;
   double enough_ = 0, left_before_ = INFINITY;
-  int latest_ = 1, before_ = 0;
+  int latest_ = 1, before_ = 0, interval_ = 0;
 };
 
-// `once()` sweeps and returns the sum over the contacts of the velocity that each visit corrected, m/s; `look()`
-// measures.
-template <class Sweep, class Look>
-SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep once, Look look)
+// For iterates of which each is better than the one before, or so it is meant.
+struct KeepNone {
+  static constexpr bool keeps = false;
+  void keep() {}
+  void restore() {}
+};
+
+// `once()` sweeps and returns the sum over the contacts of the velocity that each visit corrected, m/s; `look(goal)`
+// measures, single contacts and islands where the sums meet the goal. `best` keeps the iterate that was the best at a
+// look, and restores it where none was good enough: more sweeps never leave a worse one than fewer.
+template <class Sweep, class Look, class Best = KeepNone>
+SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep once, Look look, Best &&best = {})
 {
+  using Keeps = std::remove_reference_t<Best>;
   SolverReport report;
   if (extent.contacts == 0) return report;
   const double above = surely_above(extent, options);
   Outlook outlook(options.alternative, above / 4);
   RunAway run_away(above);
-  Looks looks(above, options.stop);
+  Looks looks(above, options);
+  if (Keeps::keeps) looks.at_intervals();
+  Criterion seen;
+  bool any = false;
   report.converged = false;
-  for (int s = 1; s <= options.maxiter && !report.converged; ++s) {
+  for (int s = 1; s <= options.maxiter; ++s) {
     const double corrected = once();
     run_away.look(corrected);
     report.iterations = s;
     const bool last = s == options.maxiter || outlook.is_worse_than_alternative(corrected);
-    if (!looks.is_due(s, corrected) && !last) continue;
-    report.criterion = look();
-    report.converged = solved(report.criterion, options);
+    if (!looks.is_due(s, corrected) && (!last || Keeps::keeps)) {
+      if (last) break;
+      continue;
+    }
+    looks.have_looked(s);
+    const bool accepts = options.budget > 0 && s >= options.budget;
+    const Goal goal = accepts ? options.accepted_goal() : options.goal();
+    const Criterion now = look(goal);
+    const bool better = !any || is_better(now, seen, options);
+    if (better || !Keeps::keeps) seen = now;
+    any = true;
+    report.criterion = now;
+    report.converged = meets(now, goal);
+    report.accepted = report.converged && !solved(now, options);
     report.ran_away = run_away.has_happened();
     if (options.history) options.history->push_back(report);
+    if (report.converged) return report;
+    if (better) best.keep();
     if (last || report.ran_away) break;
-    const double over = excess(report.criterion, options);
-    if (!is_met_by_sums(report.criterion, options.goal())) {
+    const double over = excess(now, goal);
+    if (!is_met_by_sums(now, goal)) {
       looks.were_all_off(s, corrected, over);
       continue;
     }
-    if (options.stop == Stop::natural) outlook.aim(corrected * options.tol / report.criterion.island);
+    if (options.stop == Stop::natural) outlook.aim(corrected * goal.tol / now.island);
     looks.were_some_off(s, over);
   }
+  best.restore();
+  report.criterion = seen;
   return report;
 }
 

@@ -99,6 +99,7 @@ const std::map<std::string, Reader> &readers()
       {"tol", [](Settings &s, Words &w) { s.tol = w.number<double>(); }},
       {"criterion", [](Settings &s, Words &w) { s.criterion = parse_stop(w.word()); }},
       {"maxiter", [](Settings &s, Words &w) { s.maxiter = w.number<int>(); }},
+      {"budget", [](Settings &s, Words &w) { s.budget = w.number<int>(); }},
       {"warmstart", [](Settings &s, Words &w) { s.warmstart = w.yes_or_no(); }},
       {"rho", [](Settings &s, Words &w) { s.rho = w.number<double>(); }},
       {"gamma", [](Settings &s, Words &w) { s.gamma = w.number<double>(); }},

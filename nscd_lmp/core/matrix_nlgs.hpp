@@ -122,7 +122,10 @@ SolverReport matrix_nlgs(GlobalProblem &problem, const SolverOptions &options)
       relaxation.look(corrected);
       return corrected;
     };
-    report = iterate({problem.contacts(), free_norm(problem)}, options, once, [&] { return sweeps.look(); });
+    const auto look = [&](const Goal &) { return sweeps.look(); };
+    const Extent all{problem.contacts(), free_norm(problem)};
+    if constexpr (F::dim > 1) report = iterate(all, options, once, look, BestIterate(problem));
+    else report = iterate(all, options, once, look);
   });
   return report;
 }

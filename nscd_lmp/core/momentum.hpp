@@ -9,8 +9,8 @@
 // (y - x_{k+1}) . (x_{k+1} - x_k) > 0.
 //
 // With friction the sweep is no descent of anything, and momentum can drive it round in circles or apart. Then beta is
-// kept below a cap, which is lowered whenever the sweeps get nowhere, down to none: what is left is NLGS with its
-// relaxation.
+// kept below a cap, which is lowered wherever sweeps correct more than those before, down to none: what is left is NLGS
+// with its relaxation.
 //
 // Source: Nesterov (1983); O'Donoghue & Candes (2015), gradient scheme.
 #pragma once
@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace nscd {
 
@@ -51,38 +52,34 @@ class Momentum {
 
 // The cap on momentum for sweeps with friction, and the share of their step that visits do once there is none.
 //
-// Short solves want a low cap, for they end before circles matter, and long ones a high one: 1 - cap goes from 1/10 to
-// 1/50 with the sweeps, and is doubled wherever they get nowhere.
+// What a window of sweeps corrects tells whether momentum helps: more than the window before, and 1 - cap grows by half;
+// less, and the cap may rise a little.
 class Caution {
  public:
-  double cap() const { return 1 - gap(); }
+  double cap() const { return 1 - gap_; }
   double share() const { return relaxation_.share(); }
 
-  // After a sweep. Whether it has grown.
+  // After a sweep. Whether momentum is to start anew.
   bool grows(double corrected)
   {
-    ++sweeps_;
-    if (gap() == 1) {
-      relaxation_.look(corrected);
-      return false;
+    if (gap_ == 1) relaxation_.look(corrected);
+    sum_ += corrected;
+    if (++sweeps_ % window != 0) return false;
+    const double before = std::exchange(sum_before_, std::exchange(sum_, 0.0));
+    if (!(sum_before_ <= before)) {
+      gap_ = std::min(1.0, 1.5 * gap_);
+      return true;
     }
-    if (!plateau_.is_reached(corrected)) return false;
-    factor_ *= 2;
-    plateau_ = {};
-    return true;
+    if (relaxation_.share() == 1) gap_ = std::max(narrowest, gap_ / 1.1);
+    return false;
   }
 
  private:
-  static constexpr double widest = 0.1, narrowest = 0.02, first_sweeps = 256;
-  double gap() const
-  {
-    const double base = std::clamp(widest * first_sweeps / std::max(sweeps_, 1), narrowest, widest);
-    return std::min(1.0, factor_ * base);
-  }
+  static constexpr int window = 24;
+  static constexpr double narrowest = 0.05;
 
+  double gap_ = 0.2, sum_ = 0, sum_before_ = INFINITY;
   int sweeps_ = 0;
-  double factor_ = 1;
-  Plateau plateau_;
   Relaxation relaxation_;
 };
 

@@ -17,6 +17,7 @@
 #include "carried_velocity.hpp"
 #include "hot.hpp"
 #include "iterate.hpp"
+#include "iterate_kept.hpp"
 #include "matrix_nlgs.hpp"
 #include "momentum.hpp"
 #include "visit.hpp"
@@ -146,7 +147,9 @@ SolverReport nlgs_with_friction(Problem &problem, const SolverOptions &options)
     relaxation.look(swept.corrected / share);
     return swept.corrected / share;
   };
-  return iterate(extent(problem), options, once, [&] { return measure_across(problem, carried); });
+  BestIterate best(problem);
+  return iterate(extent(problem), options, once,
+                 [&](const Goal &goal) { return measure_across(problem, goal, carried); }, best);
 }
 
 template <class Law>
@@ -161,7 +164,8 @@ SolverReport nlgs_without_friction(Problem &problem, const SolverOptions &option
     const auto some = [&](const Range &range) { return sweep<Law>(problem, range, carried, options.parameter); };
     return sweep_across(problem, some).corrected;
   };
-  return iterate(extent(problem), options, once, [&] { return measure_across(problem, carried); });
+  return iterate(extent(problem), options, once,
+                 [&](const Goal &goal) { return measure_across(problem, goal, carried); });
 }
 
 template <class Law>

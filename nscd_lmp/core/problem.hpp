@@ -23,7 +23,9 @@ struct Joined {
 // A solver's own unknowns; kept between steps, so a steady step allocates nothing.
 struct Workspace {
   std::vector<double> numbers{};
-  AlignedVector<Vec4> vectors{};
+  std::vector<double> best{};  // impulses to come back to
+  std::vector<double> normals{};
+  AlignedVector<Vec4> vectors{}, more_vectors{};
   std::vector<char> marks{};   // of bodies
   std::vector<Joined> joined{};
   Islands islands{};
@@ -32,9 +34,14 @@ struct Workspace {
 // What the stopping rule compares `tol` with: criterion (42) in m/s, or the natural map over what velocities are worth.
 enum class Stop { paper, natural };
 
+// By the natural map no contact of a solved problem is off by more than this share of what it has at stake, and of an
+// accepted one none by more than that.
+constexpr double off_of_solved = 0.1, off_of_accepted = 1;
+
 struct Goal {
   Stop stop = Stop::paper;
   double tol = 0;
+  double worst = off_of_solved;
 };
 
 class Parts;

@@ -23,6 +23,7 @@ double report_column(const StepReport &r, int column)
     case 10: return double(r.unconverged);
     case 11: return double(r.energy_limited);
     case 12: return r.criterion.worst;
+    case 13: return double(r.accepted_steps);
   }
   return 0;
 }

@@ -11,10 +11,10 @@
 namespace nscd {
 
 // f_ID[1..] of fix nscd; the first columns of .stats.
-constexpr std::array<std::string_view, 13> report_column_names{
+constexpr std::array<std::string_view, 14> report_column_names{
     "contacts", "iterations", "criterion", "motion", "bipotential", "penetration",
     "relative_residual", "largest_overlap", "dissipated_energy", "largest_overlap_ratio", "unconverged_steps",
-    "energy_limited_steps", "worst_residual"};
+    "energy_limited_steps", "worst_residual", "accepted_steps"};
 constexpr int report_columns = int(report_column_names.size());
 double report_column(const StepReport &report, int column);
 

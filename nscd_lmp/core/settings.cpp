@@ -12,6 +12,7 @@ namespace nscd {
 
 // Of the velocities that the step would have without contacts, and of the smallest radius: together they leave overlaps
 // below 0.1 % of the radius at any size of a bed and any step, for the fewest iterations (docs/benchmarks.md).
+constexpr int budget_of_friction = 30;   // sweeps
 constexpr double tol_of_scene = 1e-3, overlap_of_scene = 5e-4;
 constexpr double tol_of_paper = 1e-7;   // m/s
 
@@ -137,6 +138,17 @@ static void choose_tolerance(Settings &s)
          "velocities that contacts have to stop. A tolerance in velocity units has `criterion paper` beside it");
 }
 
+// A budget is for what has no single answer, and for a criterion that says how good an answer is.
+static void choose_budget(Settings &s)
+{
+  const bool fits = s.frictional() && s.criterion == Stop::natural;
+  if (!s.budget) s.budget = fits ? budget_of_friction : 0;
+  if (*s.budget < 0) fail("budget = ", *s.budget, " must be at least 0: sweeps after which a step may be accepted, 0 ",
+                          "for never");
+  if (*s.budget > 0 && s.criterion != Stop::natural)
+    fail("budget goes with criterion natural: criterion paper does not say how good an answer is");
+}
+
 static void check_overlap(const Settings &s)
 {
   if (!s.overlap) return;
@@ -155,6 +167,7 @@ Settings checked(Settings s, int dimension)
   require_range("theta", s.theta, 0, 1);
   require_range("recovery", s.recovery, 0, 1);
   choose_tolerance(s);
+  choose_budget(s);
   check_overlap(s);
   if (s.maxiter < 1) fail("maxiter = ", s.maxiter, " must be at least 1");
   if (s.frictional() && !solver.friction)

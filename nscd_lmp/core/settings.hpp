@@ -41,6 +41,7 @@ struct Settings {
   std::optional<Stop> criterion;
   std::optional<double> overlap;   // of the smallest radius: what a contact may be driven into another in a step
   int maxiter = 1000;
+  std::optional<int> budget;     // sweeps after which a step with friction may be accepted above tol; 0: never
   bool warmstart = true;
   std::optional<double> rho;     // multiple of 1/W_nn; none: the solver's own default
   std::optional<double> gamma;

@@ -26,21 +26,39 @@ std::vector<SolverEntry> frictional_solvers()
 
 const SolverEntry &find_solver(std::string_view name) { return registry().find("solver", name); }
 
-double judged(const Criterion &criterion, const SolverOptions &options)
+static double judged(const Criterion &criterion, Stop stop)
 {
-  return options.stop == Stop::paper ? criterion.total() : std::max(criterion.relative, criterion.island);
+  return stop == Stop::paper ? criterion.total() : std::max(criterion.relative, criterion.island);
 }
 
-bool solved(const Criterion &criterion, const SolverOptions &options)
+double judged(const Criterion &criterion, const SolverOptions &options) { return judged(criterion, options.stop); }
+
+bool meets(const Criterion &criterion, const Goal &goal)
 {
-  const bool none_is_off = options.stop == Stop::paper || criterion.worst <= off_of_solved;
-  return judged(criterion, options) < options.tol && none_is_off && criterion.approach <= 1;
+  const bool none_is_off = goal.stop == Stop::paper || criterion.worst <= goal.worst;
+  return judged(criterion, goal.stop) < goal.tol && none_is_off && criterion.approach <= 1;
 }
 
-double excess(const Criterion &criterion, const SolverOptions &options)
+bool solved(const Criterion &criterion, const SolverOptions &options) { return meets(criterion, options.goal()); }
+
+double excess(const Criterion &criterion, const Goal &goal)
 {
-  const double worst = options.stop == Stop::paper ? 0 : criterion.worst / off_of_solved;
-  return std::max({criterion.approach, worst, judged(criterion, options) / options.tol});
+  const double worst = goal.stop == Stop::paper ? 0 : criterion.worst / goal.worst;
+  return std::max({criterion.approach, worst, judged(criterion, goal.stop) / goal.tol});
+}
+
+// Where the sums are not met contacts and islands need not have been looked at.
+static double badness(const Criterion &criterion, const Goal &goal)
+{
+  if (is_met_by_sums(criterion, goal)) return excess(criterion, goal);
+  return std::max(criterion.approach, (goal.stop == Stop::paper ? criterion.total() : criterion.relative) / goal.tol);
+}
+
+bool is_better(const Criterion &one, const Criterion &other, const SolverOptions &options)
+{
+  const Goal goal = options.goal();
+  const bool met = is_met_by_sums(one, goal), was_met = is_met_by_sums(other, goal);
+  return met != was_met ? met : badness(one, goal) < badness(other, goal);
 }
 
 }    // namespace nscd

@@ -8,6 +8,7 @@
 #include "criterion.hpp"
 #include "global_problem.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 #include <vector>
@@ -16,18 +17,28 @@ namespace nscd {
 
 struct SolverReport {
   int iterations = 0;
-  bool converged = true;
+  bool converged = true;      // or accepted
+  bool accepted = false;      // above tol, but good enough for what it has cost
   bool at_round_off = false;  // no solver gets further
   bool ran_away = false;      // velocities are not those of the impulses any more
   Criterion criterion;
 };
+
+// Sweeps with friction end where more of them change nothing that can be seen (docs/friction.md).
+constexpr double accepted_tolerances = 30, most_accepted = 0.1;
 
 struct SolverOptions {
   double tol = 1e-7;
   int maxiter = 1000;
   double parameter = 1;  // rho or gamma as a multiple of 1/W_nn
   Stop stop = Stop::paper;
+  int budget = 0;    // sweeps after which an answer within accepted_goal() is good enough; 0: none ever is
   Goal goal() const { return {stop, tol}; }
+  // Of the natural map; the same bound on approaches.
+  Goal accepted_goal() const 
+  {
+    return {stop, std::min(accepted_tolerances * tol, most_accepted), off_of_accepted};
+  }
   double alternative = 0;  // sweeps that another solver would cost: give up if more seem to be needed; 0: never
   std::vector<SolverReport> *history = nullptr;  // gets a row whenever the criterion is measured, if given
 };
@@ -35,9 +46,13 @@ struct SolverOptions {
 // What the stopping rule looks at, and whether it is met.
 double judged(const Criterion &criterion, const SolverOptions &options);
 bool solved(const Criterion &criterion, const SolverOptions &options);
+bool meets(const Criterion &criterion, const Goal &goal);
 
-// How many times too large the worst contact or island is.
-double excess(const Criterion &criterion, const SolverOptions &options);
+// How many times too large the sums, the worst contact or the worst island are.
+double excess(const Criterion &criterion, const Goal &goal);
+
+// Whether one iterate is nearer to the goal than another.
+bool is_better(const Criterion &one, const Criterion &other, const SolverOptions &options);
 
 struct SolverEntry {
   int order;                    // place in choice lists and legends

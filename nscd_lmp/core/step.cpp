@@ -39,6 +39,7 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
   options_.stop = *settings_.criterion;
   (options_.stop == Stop::natural ? state_.tol_of_worth : state_.tol_absolute) = options_.tol;
   options_.maxiter = settings_.maxiter;
+  options_.budget = *settings_.budget;
   options_.parameter = solver_parameter(settings_, *solver_);
   const Inertia inertia = settings_.inertia.value_or(dimension == 2 ? Inertia::disc : Inertia::sphere);
   state_.friction.model = choose_model(settings_, dimension);
@@ -154,13 +155,13 @@ void Step::share_among_threads(std::size_t contacts)
   if (moved && halo_) halo_->find_touching(state_);
 }
 
-// What is given up, and with friction Newton's law, is kept from making energy; what a custom solver answers is taken
+// What is given up or accepted, and with friction Newton's law, is kept from making energy; what a custom solver answers is taken
 // as it is.
 void Step::solve_within_energy(const Part &part, EnergyLimit::From from)
 {
   share_among_threads(part.contacts);
   const bool newton = state_.friction.model != Model::frictionless && part.e != part.e_t;
-  const auto solve = [&] { return solve_part(part, options_.maxiter); };
+  const auto solve = [&] { return solve_part(part, options_.maxiter) && !report_.accepted; };
   if (custom_) solve();
   else energy_limited_ |= energy_limit_.solve(state_, part.contacts, newton, from, solve);
 }
@@ -200,6 +201,7 @@ bool Step::solve_part(const Part &part, int maxiter)
   }
   SolverOptions options = options_;
   options.maxiter = maxiter;
+  if (options.budget > 0) options.budget = std::max(1, options.budget - (report_.iterations - started_at_));
   SolverReport solved = solve_problem(problem, options);
   if (!solved.converged) look_closer(problem, solved.criterion);
   report_.seconds_solver += seconds(start, Clock::now());
@@ -213,12 +215,14 @@ bool Step::solve_part(const Part &part, int maxiter)
   // The criterion of the last solve, or of the one that failed.
   if (report_.converged || !solved.converged) report_.criterion = solved.criterion;
   report_.converged = report_.converged && solved.converged;
+  report_.accepted |= solved.accepted;
   return solved.converged;
 }
 
 void Step::judge()
 {
   const Criterion &seen = report_.criterion;
+  report_.accepted_steps += report_.converged && report_.accepted;
   if (report_.converged) return;
   ++report_.unconverged;
   if (settings_.unconverged != Unconverged::error) return;

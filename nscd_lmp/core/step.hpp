@@ -36,9 +36,11 @@ struct StepReport {
   double dissipated_in_step = 0;     // J, by contacts
   double dissipated = 0;             // J, by contacts since begin_run
   long unconverged = 0;              // steps since begin_run
+  long accepted_steps = 0;           // steps since begin_run
   long energy_limited = 0;           // steps since begin_run in which impulses were scaled back, since they made energy
   bool unread_torque = false;        // a frictionless step met torques
-  bool converged = true;
+  bool converged = true;             // or accepted
+  bool accepted = false;             // above tol, but good enough for the sweeps that it has cost
   bool jammed = false;               // unconverged, since obstacles approach and nothing can give way
   double seconds_contacts = 0;       // detection, biases, update
   double seconds_solver = 0;
@@ -152,6 +154,7 @@ class Step {
   AlignedVector<Vec4> free_spins_;
   bool energy_limited_ = false;    // in this step
   bool shared_among_threads_ = false;   // the contacts that are being solved
+  int started_at_ = 0;             // iterations of the step before the solves that share a budget
   double free_norm_ = 0;           // of the step's contacts, m/s
   MissedPairs missed_{list_};
   std::set<std::pair<int, int>> unlisted_;   // pairs that were found beyond the list after a solve of this step

@@ -32,7 +32,7 @@ bool Step::doubts_contacts() const
 // Everything that a step sums up over its solves.
 void Step::begin_rounds()
 {
-  report_.iterations = 0;
+  report_.iterations = started_at_ = 0;
   report_.seconds_solver = 0;
   report_.converged = true;
   energy_limited_ = false;
@@ -58,9 +58,11 @@ void Step::solve()
   int sweeps = first_sweeps;
   bool briefly = doubts_contacts(), solved = false;
   for (bool again = false, grows = false; !solved || grows; again = true) {
+    report_.accepted = false;
     if (impacts_first) {
       resolve_impacts_first(again);
       first = 0;
+      started_at_ = report_.iterations;
     }
     start_contacts(first, again && !impacts_first);
     const Part part{state_.contacts.size(), e, e_t, free_norm_};
@@ -110,6 +112,7 @@ void Step::resolve_impacts_first(bool again)
   law_->impacts(state_, [this](std::size_t count) {
     const double norm = keep_free_velocities(state_, 0, count);
     bound_approach_of_impacts(state_, count);
+    started_at_ = report_.iterations;
     solve_within_energy({count, settings_.restitution, settings_.e_t, norm}, EnergyLimit::From::solve);
   });
 }

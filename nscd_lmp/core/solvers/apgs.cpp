@@ -44,9 +44,10 @@ NSCD_HOT void extrapolate_vectors(double share, const Range &range, Vec4 *vector
 // Round-off between them and the impulses grows by 1 / (1 - beta): `restore` gives bodies that carry their impulses.
 class BodyMomentum {
  public:
-  explicit BodyMomentum(Problem &problem) : problem_(problem), count_(problem.bodies.size())
+  // `kept`: room for them.
+  BodyMomentum(Problem &problem, AlignedVector<Vec4> &kept) :
+      problem_(problem), kept_(kept), count_(problem.bodies.size())
   {
-    AlignedVector<Vec4> &kept = problem.workspace.vectors;
     kept.clear();
     for (int copies = 0; copies < 2; ++copies) {
       kept.insert(kept.end(), problem.bodies.begin(), problem.bodies.end());
@@ -56,7 +57,7 @@ class BodyMomentum {
 
   void extrapolate(double share)
   {
-    Vec4 *const last = problem_.workspace.vectors.data() + kept_each();
+    Vec4 *const last = kept_.data() + kept_each();
     in_chunks(problem_.team, count_, [&](const Range &range, int) {
       extrapolate_vectors(share, range, problem_.bodies.data(), last);
       if (problem_.sliding.spins) extrapolate_vectors(share, range, problem_.sliding.spins, last + count_);
@@ -68,7 +69,7 @@ class BodyMomentum {
   template <class Add>
   void restore(Add add)
   {
-    const Vec4 *const first = problem_.workspace.vectors.data();
+    const Vec4 *const first = kept_.data();
     move_last(-1);
     std::copy(first, first + count_, problem_.bodies.begin());
     if (problem_.sliding.spins) std::copy(first + count_, first + 2 * count_, problem_.sliding.spins);
@@ -82,7 +83,7 @@ class BodyMomentum {
   // By the bodies' own velocities; the inverse masses come back.
   void move_last(double sign)
   {
-    Vec4 *const last = problem_.workspace.vectors.data() + kept_each();
+    Vec4 *const last = kept_.data() + kept_each();
     for (std::size_t i = 0; i < count_; ++i) {
       last[i] += problem_.bodies[i] * sign;
       if (problem_.sliding.spins) last[count_ + i] += problem_.sliding.spins[i] * sign;
@@ -92,20 +93,76 @@ class BodyMomentum {
   std::size_t kept_each() const { return problem_.sliding.spins ? 2 * count_ : count_; }
 
   Problem &problem_;
+  AlignedVector<Vec4> &kept_;
   const std::size_t count_;
 };
+
+// An exact visit along the normal that leaves the impulse as large as the tangential one needs it.
+struct AtLeast : Pdas {
+  static constexpr bool carries_velocity = true;
+  static Local visit(Local now, double v, double w_inverse, double)
+  {
+    return {std::max(now.velocity, now.impulse - v * w_inverse), now.velocity};
+  }
+};
+
+template <class M>
+void find_least_normals(const Problem &problem, double *least)
+{
+  const auto *const slides = problem.sliding.slides<M>();
+  for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
+    const double needed = slides[k].mu > 0 ? length(slides[k].impulse) / slides[k].mu : 0;
+    least[k] = std::min(needed, problem.contacts[k].impulse);
+  }
+}
+
+NSCD_HOT double largest_approach(const Problem &problem)
+{
+  double largest = 0;
+  for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
+    const Contact &c = problem.contacts[k];
+    largest = std::max(largest, -(normal_velocity(c, problem.bodies.data()) + c.bias) * problem.per_approach[k]);
+  }
+  return problem.halo ? problem.halo->max(largest) : largest;
+}
+
+// Sweeps along the normals, as without friction, with the tangential impulses as they are: until no contact approaches
+// faster than it may. Friction makes that slow, and is not worth it (docs/friction.md). Returns how many.
+int part_normals(Problem &problem)
+{
+  constexpr int most = 300, looked_every = 8;
+  const std::size_t n = problem.contacts.size();
+  std::vector<double> &numbers = problem.workspace.normals;   // impulses before the last sweep, and the least ones
+  numbers.resize(2 * n);
+  double *const least = numbers.data() + n;
+  for (std::size_t k = 0; k < n; ++k) numbers[k] = problem.contacts[k].impulse;
+  with_friction(problem.sliding.model, [&]<class M>(M) { find_least_normals<M>(problem, least); });
+  Pace pace(false);
+  pace.momentum.previous = numbers.data();
+  BodyMomentum bodies(problem, problem.workspace.more_vectors);
+  int sweeps = 0;
+  const auto some = [&](const Range &range) { return sweep<AtLeast, true>(problem, range, least, 1, pace.momentum); };
+  do {
+    for (int k = 0; k < looked_every; ++k, ++sweeps) {
+      bodies.extrapolate(pace.momentum.share());
+      pace.look(sweep_across(problem, some));
+    }
+  } while (sweeps < most && !(largest_approach(problem) <= 1));
+  return sweeps;
+}
 
 constexpr int restored_every = 200;  // sweeps: a pass over the contacts costs nothing then
 
 // sweep(range, momentum, share) sweeps over some of the contacts; add(k) is as above. The workspace starts with the
 // impulses of the last sweep.
 // What looks solved is looked at again with bodies that carry their impulses.
-template <class Sweep, class Add>
-SolverReport accelerate(Problem &problem, const SolverOptions &options, Sweep sweep, Add add)
+template <class Sweep, class Add, class Best = KeepNone>
+SolverReport accelerate(Problem &problem, const SolverOptions &options, Sweep sweep, Add add, Best &&best = {})
 {
+  int extra = 0;   // sweeps along normals alone
   Pace pace(problem.sliding.model != Model::frictionless);
   pace.momentum.previous = problem.workspace.numbers.data();
-  BodyMomentum bodies(problem);
+  BodyMomentum bodies(problem, problem.workspace.vectors);
   int sweeps = 0;
   const auto once = [&] {
     if (++sweeps % restored_every == 0) bodies.restore(add);
@@ -113,22 +170,60 @@ SolverReport accelerate(Problem &problem, const SolverOptions &options, Sweep sw
     const auto some = [&](const Range &range) { return sweep(range, pace.momentum, pace.share()); };
     return pace.look(sweep_across(problem, some));
   };
-  const auto look = [&] {
-    const Criterion seen = measure_across(problem);
-    if (!solved(seen, options)) return seen;
+  const auto look = [&](const Goal &goal) {
+    Criterion seen = measure_across(problem, goal);
+    if constexpr (std::remove_reference_t<Best>::keeps)
+      if (is_met_by_sums(seen, goal) && seen.approach > 1) {
+        extra += part_normals(problem);
+        pace.momentum.restart();
+        seen = measure_across(problem, goal);
+      }
+    if (!meets(seen, goal)) return seen;
     bodies.restore(add);
     const bool islands = std::exchange(problem.judges_islands, false);   // they have changed by round-off alone
-    Criterion again = measure_across(problem);
+    Criterion again = measure_across(problem, goal);
     problem.judges_islands = islands;
     again.island = std::max(again.island, seen.island);
     return again;
   };
-  SolverReport report = iterate(extent(problem), options, once, look);
+  SolverReport report = iterate(extent(problem), options, once, look, best);
+  report.iterations += extra;
   if (report.converged) return report;
   bodies.restore(add);
-  report.criterion = measure_across(problem);
+  report.criterion = measure_across(problem, options.goal());
   return report;
 }
+
+// For iterate(); bodies are to be restored with them.
+template <class M>
+class BestImpulses {
+  using Tangent = typename M::Tangent;
+  static constexpr std::size_t width = carried_doubles<Tangent>;
+
+ public:
+  static constexpr bool keeps = true;
+  explicit BestImpulses(Problem &problem) : problem_(problem) {}
+  void keep()
+  {
+    kept_.resize(problem_.contacts.size() * width);
+    for (std::size_t k = 0; k < problem_.contacts.size(); ++k)
+      store_carried<Tangent>(&kept_[k * width], {problem_.contacts[k].impulse, slide(k).impulse});
+  }
+  void restore()
+  {
+    for (std::size_t k = 0; k < kept_.size() / width; ++k) {
+      const Split<Tangent> p = load_carried<Tangent>(&kept_[k * width]);
+      problem_.contacts[k].impulse = p.n;
+      slide(k).impulse = p.t;
+    }
+  }
+
+ private:
+  auto &slide(std::size_t k) { return problem_.sliding.slides<M>()[k]; }
+
+  Problem &problem_;
+  std::vector<double> &kept_ = problem_.workspace.best;
+};
 
 template <class M>
 SolverReport apgs_with_friction(Problem &problem, const SolverOptions &options)
@@ -143,13 +238,14 @@ SolverReport apgs_with_friction(Problem &problem, const SolverOptions &options)
   const auto sweep = [&](const Range &range, const Momentum &momentum, double share) {
     return frictional_sweep<Pdas, M, true>(problem, range, nullptr, 1, share, momentum);
   };
-  return accelerate(problem, options, sweep, [&](std::size_t k) {
+  const auto add = [&](std::size_t k) {
     const Contact &c = problem.contacts[k];
     const Split<Tangent> start = load_carried<Tangent>(&numbers[(n + k) * width]);
     apply_impulse(c, c.impulse - start.n, problem.bodies.data());
     apply_tangential<M>(c, slides[k].impulse - start.t, problem.sliding.spin_response, problem.bodies.data(),
                         problem.sliding.spins);
-  });
+  };
+  return accelerate(problem, options, sweep, add, BestImpulses<M>(problem));
 }
 
 SolverReport apgs_without_friction(Problem &problem, const SolverOptions &options)
@@ -216,7 +312,10 @@ SolverReport matrix_apgs(GlobalProblem &problem, const SolverOptions &options)
     MatrixMomentum<F> sweeps(problem);
     Pace pace(F::dim > 1);
     const auto once = [&] { return pace.look(sweeps.sweep(pace.momentum, pace.share())); };
-    report = iterate({problem.contacts(), free_norm(problem)}, options, once, [&] { return sweeps.look(); });
+    const auto look = [&](const Goal &) { return sweeps.look(); };
+    const Extent all{problem.contacts(), free_norm(problem)};
+    if constexpr (F::dim > 1) report = iterate(all, options, once, look, BestIterate(problem));
+    else report = iterate(all, options, once, look);
   });
   return report;
 }

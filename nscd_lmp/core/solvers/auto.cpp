@@ -9,6 +9,7 @@
 // 1,500 contacts, 14,000 at 32,000). With hardly more contacts than bodies they make columns and trees, which have no
 // fill: then it is that of an assembly. The 20 or so factorisations of the interior point cost 14 n sweeps (18,000 at
 // 1,300 contacts).
+#include "../iterate_kept.hpp"
 #include "../solver.hpp"
 
 #include <algorithm>
@@ -67,41 +68,6 @@ SolverReport run(std::string_view solver, GlobalProblem &problem, const SolverOp
   return find_solver(solver).solve_global(problem, options);
 }
 
-// Impulses and what they do, to come back to.
-class Iterate {
- public:
-  void keep(const Problem &problem)
-  {
-    bodies_.assign(problem.bodies.begin(), problem.bodies.end());
-    contacts_.assign(problem.contacts.begin(), problem.contacts.end());
-    with_friction(problem.sliding.model, [&]<class M>(M) {
-      const auto *const slides = problem.sliding.slides<M>();
-      spins_.assign(problem.sliding.spins, problem.sliding.spins + problem.bodies.size());
-      for (std::size_t k = 0; k < problem.contacts.size(); ++k)
-        tangential_.push_back(M::in_space(problem.contacts[k].normal, slides[k].impulse));
-    });
-  }
-  void restore(Problem &problem) const
-  {
-    std::copy(bodies_.begin(), bodies_.end(), problem.bodies.begin());
-    std::copy(contacts_.begin(), contacts_.end(), problem.contacts.begin());
-    std::copy(spins_.begin(), spins_.end(), problem.sliding.spins);
-    with_friction(problem.sliding.model, [&]<class M>(M) {
-      for (std::size_t k = 0; k < tangential_.size(); ++k)
-        problem.sliding.slides<M>()[k].impulse = M::from_space(problem.contacts[k].normal, tangential_[k]);
-    });
-  }
-
-  void keep(const GlobalProblem &problem) { impulses_.assign(problem.p.begin(), problem.p.end()); }
-  void restore(GlobalProblem &problem) const { std::copy(impulses_.begin(), impulses_.end(), problem.p.begin()); }
-
- private:
-  AlignedVector<Body> bodies_;
-  AlignedVector<Vec4> spins_, tangential_;
-  std::vector<Contact> contacts_;
-  std::vector<double> impulses_;
-};
-
 // One solver after another on the same iterate; iterations add up.
 template <class AnyProblem>
 class Relay {
@@ -133,7 +99,7 @@ class Relay {
   void try_factorising(std::string_view solver)
   {
     if (is_over()) return;
-    Iterate before;
+    IterateKept before;
     before.keep(problem_);
     const Criterion seen = report_.criterion;
     hand_to(solver);
