@@ -44,18 +44,4 @@ class IterateKept {
   std::vector<double> impulses_;
 };
 
-// For iterate().
-template <class AnyProblem>
-class BestIterate {
- public:
-  static constexpr bool keeps = true;
-  explicit BestIterate(AnyProblem &problem) : problem_(problem) {}
-  void keep() { kept_.keep(problem_); }
-  void restore() { kept_.restore(problem_); }
-
- private:
-  AnyProblem &problem_;
-  IterateKept kept_;
-};
-
 }    // namespace nscd

@@ -97,6 +97,7 @@ const std::map<std::string, Reader> &readers()
       {"e_t", [](Settings &s, Words &w) { s.e_t = w.number<double>(); }},
       {"inertia", [](Settings &s, Words &w) { s.inertia = read_inertia(w); }},
       {"tol", [](Settings &s, Words &w) { s.tol = w.number<double>(); }},
+      {"accuracy", [](Settings &s, Words &w) { s.accuracy = parse_accuracy(w.word()); }},
       {"criterion", [](Settings &s, Words &w) { s.criterion = parse_stop(w.word()); }},
       {"maxiter", [](Settings &s, Words &w) { s.maxiter = w.number<int>(); }},
       {"budget", [](Settings &s, Words &w) { s.budget = w.number<int>(); }},

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "frame.hpp"
+#include "best_impulses.hpp"
 #include "iterate.hpp"
 #include "visit.hpp"
 
@@ -124,7 +125,7 @@ SolverReport matrix_nlgs(GlobalProblem &problem, const SolverOptions &options)
     };
     const auto look = [&](const Goal &) { return sweeps.look(); };
     const Extent all{problem.contacts(), free_norm(problem)};
-    if constexpr (F::dim > 1) report = iterate(all, options, once, look, BestIterate(problem));
+    if constexpr (F::dim > 1) report = iterate(all, options, once, look, BestMatrixImpulses(problem));
     else report = iterate(all, options, once, look);
   });
   return report;

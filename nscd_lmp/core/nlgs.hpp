@@ -16,8 +16,8 @@
 #include "across_ranks.hpp"
 #include "carried_velocity.hpp"
 #include "hot.hpp"
+#include "best_impulses.hpp"
 #include "iterate.hpp"
-#include "iterate_kept.hpp"
 #include "matrix_nlgs.hpp"
 #include "momentum.hpp"
 #include "visit.hpp"
@@ -147,7 +147,7 @@ SolverReport nlgs_with_friction(Problem &problem, const SolverOptions &options)
     relaxation.look(swept.corrected / share);
     return swept.corrected / share;
   };
-  BestIterate best(problem);
+  BestImpulses<M> best(problem);
   return iterate(extent(problem), options, once,
                  [&](const Goal &goal) { return measure_across(problem, goal, carried); }, best);
 }

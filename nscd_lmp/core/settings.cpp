@@ -10,10 +10,15 @@
 
 namespace nscd {
 
-// Of the velocities that the step would have without contacts, and of the smallest radius: together they leave overlaps
-// below 0.1 % of the radius at any size of a bed and any step, for the fewest iterations (docs/benchmarks.md).
-constexpr int budget_of_friction = 30;   // sweeps
-constexpr double tol_of_scene = 1e-3, overlap_of_scene = 5e-4;
+// tol of the velocities that the step would have without contacts, overlap of the smaller radius, budget in sweeps, of
+// scenes with friction. What they buy is measured: docs/benchmarks.md, docs/friction_accuracy.md.
+struct OfAccuracy {
+  const char *name;
+  double tol, overlap;
+  int budget;
+};
+constexpr OfAccuracy accuracies[] = {{"loose", 1e-2, 1e-3, 10}, {"normal", 1e-3, 5e-4, 30}, {"tight", 1e-4, 1e-4, 300}};
+
 constexpr double tol_of_paper = 1e-7;   // m/s
 
 Unconverged parse_unconverged(const std::string &word)
@@ -39,6 +44,15 @@ Stop parse_stop(const std::string &word)
   if (word == "natural") return Stop::natural;
   fail("unknown criterion '", word, "': choose one of paper, natural");
 }
+
+Accuracy parse_accuracy(const std::string &word)
+{
+  for (std::size_t k = 0; k < std::size(accuracies); ++k)
+    if (word == accuracies[k].name) return Accuracy(k);
+  fail("unknown accuracy '", word, "': choose one of loose, normal, tight");
+}
+
+static const OfAccuracy &numbers(const Settings &s) { return accuracies[int(s.accuracy.value_or(Accuracy::normal))]; }
 
 static void require_range(const char *what, double value, double lo, double hi)
 {
@@ -129,8 +143,10 @@ static void choose_tolerance(Settings &s)
 {
   if (!s.criterion) s.criterion = Stop::natural;
   const bool of_scene = *s.criterion == Stop::natural;
-  if (of_scene && !s.overlap && find_law(s.law).make()->looks_ahead()) s.overlap = overlap_of_scene;
-  if (!s.tol) s.tol = of_scene ? tol_of_scene : tol_of_paper;
+  if (of_scene && !s.overlap && find_law(s.law).make()->looks_ahead()) s.overlap = numbers(s).overlap;
+  if (!of_scene && s.accuracy)
+    fail("accuracy goes with criterion natural: a tol of criterion paper is in m/s, so no word says what it is worth");
+  if (!s.tol) s.tol = of_scene ? numbers(s).tol : tol_of_paper;
   if (!(*s.tol > 0 && std::isfinite(*s.tol)))
     fail("tol = ", *s.tol, " must be > 0: it is the value of the criterion at which a step is solved");
   if (s.criterion == Stop::natural && *s.tol > residual_worth_saying)
@@ -142,7 +158,7 @@ static void choose_tolerance(Settings &s)
 static void choose_budget(Settings &s)
 {
   const bool fits = s.frictional() && s.criterion == Stop::natural;
-  if (!s.budget) s.budget = fits ? budget_of_friction : 0;
+  if (!s.budget) s.budget = fits ? numbers(s).budget : 0;
   if (*s.budget < 0) fail("budget = ", *s.budget, " must be at least 0: sweeps after which a step may be accepted, 0 ",
                           "for never");
   if (*s.budget > 0 && s.criterion != Stop::natural)

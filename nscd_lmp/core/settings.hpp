@@ -29,6 +29,10 @@ const char *name(Unconverged policy);
 
 Stop parse_stop(const std::string &word);
 
+// How good the answers of steps are with criterion natural, where tol, overlap and budget are not given.
+enum class Accuracy { loose, normal, tight };
+Accuracy parse_accuracy(const std::string &word);
+
 struct Settings {
   std::string solver = "auto";
   std::string law = "gap";
@@ -36,6 +40,7 @@ struct Settings {
   double friction = 0;           // Coulomb's mu of pairs, and of walls without their own; may be `stick`
   double e_t = 0;                // tangential restitution, 0..1
   std::optional<Inertia> inertia;  // none: disc in dimension 2, sphere otherwise
+  std::optional<Accuracy> accuracy;   // none: normal
   // On the criterion. None: natural, relative to the scene's own velocities; a tol of criterion paper is in m/s.
   std::optional<double> tol;
   std::optional<Stop> criterion;

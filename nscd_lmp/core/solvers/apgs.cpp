@@ -11,6 +11,7 @@
 // many iterations as APGS sweeps to low accuracy and more to high (docs/solvers.md).
 #include "../local/pdas.hpp"
 
+#include "../best_impulses.hpp"
 #include "../nlgs.hpp"
 
 #include <algorithm>
@@ -194,37 +195,6 @@ SolverReport accelerate(Problem &problem, const SolverOptions &options, Sweep sw
   return report;
 }
 
-// For iterate(); bodies are to be restored with them.
-template <class M>
-class BestImpulses {
-  using Tangent = typename M::Tangent;
-  static constexpr std::size_t width = carried_doubles<Tangent>;
-
- public:
-  static constexpr bool keeps = true;
-  explicit BestImpulses(Problem &problem) : problem_(problem) {}
-  void keep()
-  {
-    kept_.resize(problem_.contacts.size() * width);
-    for (std::size_t k = 0; k < problem_.contacts.size(); ++k)
-      store_carried<Tangent>(&kept_[k * width], {problem_.contacts[k].impulse, slide(k).impulse});
-  }
-  void restore()
-  {
-    for (std::size_t k = 0; k < kept_.size() / width; ++k) {
-      const Split<Tangent> p = load_carried<Tangent>(&kept_[k * width]);
-      problem_.contacts[k].impulse = p.n;
-      slide(k).impulse = p.t;
-    }
-  }
-
- private:
-  auto &slide(std::size_t k) { return problem_.sliding.slides<M>()[k]; }
-
-  Problem &problem_;
-  std::vector<double> &kept_ = problem_.workspace.best;
-};
-
 template <class M>
 SolverReport apgs_with_friction(Problem &problem, const SolverOptions &options)
 {
@@ -314,7 +284,7 @@ SolverReport matrix_apgs(GlobalProblem &problem, const SolverOptions &options)
     const auto once = [&] { return pace.look(sweeps.sweep(pace.momentum, pace.share())); };
     const auto look = [&](const Goal &) { return sweeps.look(); };
     const Extent all{problem.contacts(), free_norm(problem)};
-    if constexpr (F::dim > 1) report = iterate(all, options, once, look, BestIterate(problem));
+    if constexpr (F::dim > 1) report = iterate(all, options, once, look, BestMatrixImpulses(problem));
     else report = iterate(all, options, once, look);
   });
   return report;
