@@ -40,6 +40,7 @@ struct StepReport {
   bool unread_torque = false;        // a frictionless step met torques
   bool converged = true;
   bool jammed = false;               // unconverged, since obstacles approach and nothing can give way
+  bool impacts_left = false;         // impacts under restitution that did not end were taken as inelastic
   double seconds_contacts = 0;       // detection, biases, update
   double seconds_solver = 0;
 };
