@@ -19,7 +19,7 @@ from nscd_lmp import _core, ghost_homes
 from nscd_lmp.attached import Attached
 from nscd_lmp.command_lines import split_commands
 from nscd_lmp.contact_system import ContactSystem
-from nscd_lmp.inspection import MOVERS, Inspection
+from nscd_lmp.inspection import MOVERS, FixInfo, Inspection
 from nscd_lmp.ranks import Ranks
 from nscd_lmp.step_fix import FIX_ID, address, definition
 from nscd_lmp.walls import Plane
@@ -211,6 +211,7 @@ class _Door:
         self.lmp = lmp
         self.group = group
         self.remeasure = False
+        self.holders_told_of: set[str] = set()
         if any(fix.id == FIX_ID for fix in self.inspection.fixes()):
             raise _core.NscdError(
                 "another attach() is at work on this LAMMPS object: detach() it first, and attach to the union of"
@@ -287,6 +288,7 @@ class _Door:
             return
         self.inspection.refuse_integrators(fixes, FIX_ID, self.group)
         self.inspection.refuse_bonding(fixes)
+        self.tell_of_force_holders(fixes)
         movers = any(MOVERS.match(fix.style) for fix in fixes)
         self.fix.set_fixes(self.inspection.held_groups(fixes), movers)
         if fixes[-1].id != FIX_ID:
@@ -300,6 +302,19 @@ class _Door:
             self.fix.set_listed_pairs(*astuple(self.inspection.listed_pairs()))
             self.fix.set_image_cutoff(self.inspection.communication_cutoff())
             self.remeasure = False
+
+    def tell_of_force_holders(self, fixes: list[FixInfo]) -> None:
+        """Warn, once each, of fixes that hold grains against forces alone."""
+        for fix in self.inspection.force_holders(fixes, self.group):
+            if fix.id in self.holders_told_of:
+                continue
+            self.holders_told_of.add(fix.id)
+            warnings.warn(
+                f"fix {fix.id} (style {fix.style}) sets forces, and impulses of contacts, which are none, move its"
+                " grains all the same: to hold grains, leave them out of the group of attach(), or use fix freeze; to"
+                " keep them in a plane, use dimension 2",
+                stacklevel=4,
+            )
 
     def after_run(self) -> None:
         """Raise what stopped the run; warn of what its steps may be taken for and are not."""

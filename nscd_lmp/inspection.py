@@ -15,6 +15,8 @@ INTEGRATORS = re.compile(r"^(nve|nvt|nph|npt|nvk|rigid|move|brownian|bd|poems|ns
 
 # Styles that move grains without integrating them; those that change the box are found by that.
 MOVERS = re.compile(r"^(recenter|wall/reflect|wall/diffusive|append/atoms|widom|gcmc|atom/swap|mol/swap)")
+# Styles that set a force or a part of it: contacts that are forces are held and guided by them, impulses are not.
+FORCE_HOLDERS = re.compile(r"^(setforce|lineforce|planeforce|aveforce)")
 BONDING = re.compile(r"^bond/(create|react)")
 SHAPES = ("body", "line", "tri", "ellipsoid")
 
@@ -166,10 +168,11 @@ class Inspection:
             raise NscdError("LAMMPS did not tell its communication cutoff: use comm_modify mode single")
         return {collection: float(cutoff) for collection, cutoff in found}
 
-    def share_atoms(self, first: str, second: str) -> bool:
-        """Return whether an atom is in both groups."""
+    def share_atoms(self, first: str, second: str, held: int = 0) -> bool:
+        """Return whether an atom is in both groups and in none of those of the bits `held`."""
         both = self.group_bit(first) | self.group_bit(second)
-        here = any(mask & both == both for mask in self._atoms("mask")[: self._setting("nlocal")])
+        masks = self._atoms("mask")[: self._setting("nlocal")]
+        here = any(mask & both == both and not mask & held for mask in masks)
         return any(self._ranks.comm.allgather(here)) if self._ranks else here
 
     def held_groups(self, fixes: list[FixInfo]) -> int:
@@ -198,3 +201,9 @@ class Inspection:
                     f"atoms of group {group} are moved by fix {fix.id} (style {fix.style}) too:"
                     " remove that fix or give the two disjoint groups"
                 )
+
+    def force_holders(self, fixes: list[FixInfo], group: str) -> list[FixInfo]:
+        """Return the fixes that set forces of grains of the group that move."""
+        found = [fix for fix in fixes if FORCE_HOLDERS.match(fix.style)]
+        held = self.held_groups(fixes) if found else 0
+        return [fix for fix in found if self.share_atoms(fix.group, group, held)]

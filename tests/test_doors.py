@@ -43,6 +43,21 @@ def test_doors_give_the_same_bits(start, law, e, boundary):
     assert end[0][0][:, 2].max() < 4.6e-3  # it has fallen, from 10 mm, into a bed
 
 
+def test_doors_agree_to_round_off_in_a_tilted_box(start):
+    random = np.random.default_rng(5)
+    x = 0.1 * np.stack(np.meshgrid(*[np.arange(4.0)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    gas = grains(x + 0.05, random.uniform(0.02, 0.035, 64), mass=1.0, v=random.normal(size=x.shape))
+    ends = []
+    for door in DOORS:
+        lmp = start(gas, 2e-4, box=[(0, 0.4)] * 3, boundary="p p p", vmax=10.0)
+        lmp.command("change_box all triclinic xy final 0.1 xz final 0.07 yz final -0.12 remap")
+        harden(lmp, door, restitution=1.0, criterion="natural", tol=1e-9)
+        lmp.command("run 500")
+        ends.append(state(lmp)[1])
+    # some 1e-14 of 1 m/s, times what collisions of 0.1 s make of it
+    np.testing.assert_allclose(*ends, rtol=0, atol=1e-12)
+
+
 @pytest.mark.parametrize("solver", nscd_lmp.SOLVERS)
 def test_doors_give_the_same_bits_and_columns_with_every_solver(start, solver):
     rows, ends = [], []

@@ -107,6 +107,45 @@ def test_frozen_atoms_of_the_group_are_obstacles_at_rest(balls, door, law, frict
     assert x[0, 0] == pytest.approx(-0.4, abs=1e-9 if law == "gap" else 1.01 * DT)
 
 
+HOLDERS = ["setforce 0 0 0", "lineforce 0 1 0", "planeforce 1 0 0", "aveforce 0 0 0"]
+
+
+@BOTH
+@pytest.mark.parametrize("holder", HOLDERS)
+def test_fix_that_sets_forces_does_not_hold_grains_and_that_is_told_once(balls, tmp_path, door, holder):
+    lmp = balls(after=f"fix pin two {holder}\nvelocity two set 0 0 0")
+    harden(lmp, door, restitution=1.0)
+    (said,) = told(lmp, door, "run 40", tmp_path / "first")
+    style = holder.split()[0]
+    assert re.search(
+        rf"fix pin \(style {style}\) sets forces, .*leave them out of the group .*, or use fix freeze", said
+    )
+    assert state(lmp)[1][1, 0] == pytest.approx(1.0, abs=1e-9)  # as if nothing held it
+    assert told(lmp, door, "run 5", tmp_path / "second") == []
+
+
+@BOTH
+@pytest.mark.parametrize("remedy", ["freeze", "group"])
+def test_fix_that_sets_forces_of_obstacles_is_not_told_of(balls, tmp_path, door, remedy):
+    lmp = balls(
+        after="fix pin two setforce 0 0 0\nvelocity two set 0 0 0" + "\nfix ice two freeze" * (remedy == "freeze")
+    )
+    harden(lmp, door, "all" if remedy == "freeze" else "one", restitution=1.0)
+    assert told(lmp, door, "run 40", tmp_path / "log") == []
+    assert places(lmp)[1] == 0.6
+    assert state(lmp)[1][0, 0] == pytest.approx(-1.0, abs=1e-9)
+
+
+@BOTH
+def test_fix_that_sets_forces_of_grains_to_come_is_told_of(balls, tmp_path, door):
+    lmp = balls(after="group held empty\nfix pin held setforce 0 0 0")
+    harden(lmp, door)
+    assert told(lmp, door, "run 5", tmp_path / "first") == []
+    lmp.command("group held id 2")
+    (said,) = told(lmp, door, "run 5", tmp_path / "second")
+    assert "fix pin (style setforce)" in said
+
+
 SHAPES = {
     "body nparticle 2 6": "",
     "line": "dimension 2\nboundary f f p\n",

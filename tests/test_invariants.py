@@ -87,7 +87,7 @@ def test_pair_that_meets_on_both_sides_of_a_periodic_box_has_two_contacts(start,
 def test_newton_s_cradle_answers_as_the_law_says(start, law, expected):
     # moreau: (21) on all five contacts at once; the four at rest leave together, at 2 / N, the first returns
     # at 2 / N - 1. gap: impacts propagate from ball to ball within the step, and the last one leaves, as in
-    # the toy. (ten balls are as good as five; with more than 50 law gap's rounds end)
+    # the toy. (hundred balls are as good as five, below)
     x = [(-0.01, 0, 0), *((k, 0, 0) for k in range(1, 5))]
     balls = grains(x, RADIUS, mass=2.0, v=[(1.0, 0, 0)] + [(0, 0, 0)] * 4)
     lmp = start(balls, 1e-3)
@@ -95,6 +95,42 @@ def test_newton_s_cradle_answers_as_the_law_says(start, law, expected):
     lmp.command("run 30")
     # criterion 1e-13 on the column-like chain of four: times the 15 sweeps of a decade
     np.testing.assert_allclose(state(lmp)[1][:, 0], expected, rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_impact_passes_a_row_of_a_hundred_balls_in_a_step(start, door):
+    # a round of impacts for each ball: 99, where a dense bed gets 50
+    balls = grains([(k, 0, 0) for k in range(100)], RADIUS, mass=2.0, v=[(1.0, 0, 0)] + [(0, 0, 0)] * 99)
+    lmp = start(balls, 1e-3)
+    harden(lmp, door, restitution=1.0, tol=1e-13)
+    lmp.command("run 1")
+    np.testing.assert_allclose(state(lmp)[1][:, 0], [0] * 99 + [1.0], rtol=0, atol=1e-11)  # 99 times tol
+
+
+def pressed_to_the_wall(heavy: float) -> tuple[int, list[float]]:
+    """Return how many elastic impacts a ball of 1 kg at a wall has with one of `heavy` kg, and the velocities after."""
+    u, v, impacts = -1.0, 0.0, 0
+    while v > u or v < 0:
+        if v > u:
+            mean = (heavy * u + v) / (heavy + 1)
+            u, v = 2 * mean - u, 2 * mean - v
+        else:
+            v = -v
+        impacts += 1
+    return impacts, [v, u]
+
+
+@pytest.mark.parametrize(("heavy", "digits"), [(1e2, 31), (1e4, 314)])
+def test_impacts_between_a_heavy_ball_and_a_wall_are_the_digits_of_pi(start, heavy, digits):
+    # Galperin's billiard, all of it in one step, of two contacts
+    impacts, after = pressed_to_the_wall(heavy)
+    assert impacts == digits
+    lmp = start(grains([(RADIUS, 0, 0), (3 * RADIUS, 0, 0)], RADIUS, mass=[1.0, heavy], v=[(0,) * 3, (-1.0, 0, 0)]),
+                1e-3, vmax=200.0)  # fmt: skip
+    harden(lmp, restitution=1.0, tol=1e-11, walls=[nscd_lmp.Plane((0, 0, 0), (1, 0, 0))])
+    lmp.command("run 1")
+    # tol of each impact, times their number
+    np.testing.assert_allclose(state(lmp)[1][:, 0], after, rtol=0, atol=1e-8)
 
 
 @pytest.mark.parametrize("law", LAWS)

@@ -203,3 +203,23 @@ def test_relative_residual_shows_what_criterion_42_misses_for_sand(start, solver
     assert row["criterion"] < 1e-7
     # the natural map min(v, W p) over the free velocity: min(1.5, 2.5)
     assert row["relative_residual"] == pytest.approx(1.5, rel=1e-9)
+
+
+@pytest.mark.parametrize("faster", [0.95, 1.05])
+@pytest.mark.parametrize(
+    ("push", "settings", "rests_below"),
+    [
+        (1000.0, {"criterion": "natural", "tol": 1e-3}, 2.01),  # m/s: 2 dt f/m, and 10 tol of dt f/m
+        (0.0, {"criterion": "paper", "tol": 1e-2}, 0.1),  # 10 tol
+    ],
+)
+def test_impact_under_law_gap_has_its_restitution_above_the_speed_that_counts_as_rest(
+    start, push, settings, rests_below, faster
+):
+    # a force along the floor, 1000 N/kg with steps of 1 ms, presses nothing, and yet counts
+    speed = rests_below * faster
+    lmp = start(grains((0, 0, RADIUS), RADIUS, mass=1.0, v=(0, 0, -speed)), 1e-3, vmax=20.0)
+    lmp.command(f"fix push all addforce {push} 0 0")
+    harden(lmp, law="gap", restitution=1.0, walls=[FLOOR], **settings)
+    lmp.command("run 1")
+    assert state(lmp)[1][0, 2] == pytest.approx(speed if faster > 1 else 0.0, abs=1e-9)

@@ -7,6 +7,7 @@ import warnings
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from scenes import DOORS, FLOOR, GRAVITY, grains, harden, start
 
@@ -43,11 +44,18 @@ def unsolved() -> Any:
     return lmp, {"maxiter": 1, "tol": 1e-12, "solver": "pdas", "walls": [FLOOR]}
 
 
+def endless() -> Any:
+    """A grain at the floor, hit by a ball of 1e6 times its mass: 3141 impacts follow each other."""
+    lmp = start(grains([(0, 0, R), (0, 0, 3 * R)], R, mass=[1.0, 1e6], v=[(0, 0, 0), (0, 0, -1.0)]), 1e-5, vmax=2e3)
+    return lmp, {"restitution": 1.0, "walls": [FLOOR]}
+
+
 TOLD = {
     misjudged: r"1 of 1 steps met tol 1e-07 of criterion \(42\) with velocities that are off by up to 1\.5 .*natural",
     overlapping: r"grains overlap by up to 0\.02 of the smaller radius: use law gap or a smaller timestep",
     overlapping_start: r"grains overlap by up to 0\.05 of the smaller radius: start without overlap, lower tol, or",
     passing: r"grains move by up to 3 of the smallest radius in a step, and law moreau does not see them pass",
+    endless: r"in 1 of 1 steps more impacts followed each other than law gap takes one after another, and the rest",
     unsolved: r"1 of 1 steps ended above tol 1e-12: raise maxiter \(now 1\) or tol",
 }
 
@@ -128,3 +136,15 @@ def test_nothing_is_told_of_balls_at_rest(run, door, law):
 @pytest.mark.parametrize("door", DOORS)
 def test_overlap_that_was_allowed_is_not_told(run, door):
     assert run(overlapping_start, door, ["run 1"], overlap=0.06) == []
+
+
+@pytest.mark.parametrize("door", DOORS)
+@pytest.mark.parametrize("e", [0.0, 0.5, 0.9])
+def test_nothing_is_told_of_impacts_that_die_away(run, door, e):
+    def hit_column() -> Any:
+        heights = R * (1 + 2 * np.arange(30))
+        speeds = np.where(np.arange(30) == 29, -1.0, 0.0)
+        lmp = start(grains(np.outer(heights, (0, 0, 1)), R, v=np.outer(speeds, (0, 0, 1))), 1e-4, gravity=GRAVITY)
+        return lmp, {"restitution": e, "walls": [FLOOR], "maxiter": 10000}
+
+    assert run(hit_column, door, ["run 50"]) == []

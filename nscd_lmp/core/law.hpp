@@ -22,7 +22,8 @@ class Law {
   virtual bool looks_ahead() const { return false; }
   // Whether impacts are resolved ahead of the contacts, from the free velocities of the bodies.
   virtual bool resolves_impacts(const Settings &) const { return false; }
-  virtual void impacts(State &, const SolvePart &) {}
+  // Returns whether some were left that matter, to be taken as inelastic.
+  virtual bool impacts(State &, const SolvePart &) { return false; }
   // Fills the biases of the contacts from `first` on. Bodies have the velocities without these contacts,
   // state.grains.v has v_k.
   virtual void set_bias(State &, std::size_t first) = 0;

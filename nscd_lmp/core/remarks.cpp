@@ -48,6 +48,7 @@ void Remarks::add(const StepReport &r)
     ++misjudged_;
     worst_residual_ = std::max(worst_residual_, r.criterion.typical);
   }
+  impacts_left_ += r.impacts_left;
   overlap_ratio_ = std::max(overlap_ratio_, r.largest_overlap_ratio);
   move_ratio_ = std::max(move_ratio_, r.largest_move_ratio);
   torque_ = torque_ || r.unread_torque;
@@ -63,6 +64,10 @@ std::vector<std::string> Remarks::take(const Settings &s, bool looks_ahead)
     said.push_back(sentence(misjudged_, " of ", steps_, " steps met tol ", *s.tol, " of criterion (42) with ",
                             "velocities that are off by up to ", rounded(worst_residual_), " of what a step changes: ",
                             "use criterion natural, or a smaller tol"));
+  if (impacts_left_ > 0)
+    said.push_back(sentence("in ", impacts_left_, " of ", steps_, " steps more impacts followed each other than law ",
+                            s.law, " takes one after another, and the rest gave no energy back (restitution ",
+                            s.restitution, "): use law moreau, or a smaller timestep if the grains do not touch yet"));
   if (overlap_ratio_ > std::max(overlap_worth_saying, s.overlap.value_or(0)))
     said.push_back(sentence("grains overlap by up to ", rounded(overlap_ratio_), " of the smaller radius: ",
                             looks_ahead ? "start without overlap, lower tol, or move obstacles by less a step"

@@ -31,6 +31,7 @@ class Remarks {
   long jammed_ = 0;             // not counted above
   long misjudged_ = 0;          // called solved, and off by more than residual_worth_saying
   double worst_residual_ = 0;   // of those
+  long impacts_left_ = 0;
   double overlap_ratio_ = 0;    // the largest
   double move_ratio_ = 0;       // the largest
   bool torque_ = false;

@@ -42,6 +42,7 @@ struct StepReport {
   bool converged = true;             // or accepted
   bool accepted = false;             // above tol, but good enough for the sweeps that it has cost
   bool jammed = false;               // unconverged, since obstacles approach and nothing can give way
+  bool impacts_left = false;         // impacts under restitution that did not end were taken as inelastic
   double seconds_contacts = 0;       // detection, biases, update
   double seconds_solver = 0;
 };

@@ -109,7 +109,7 @@ void Step::resolve_impacts_first(bool again)
     place_slides(state_, 0);
   }
   for (Contact &c : state_.contacts) c.impulse = 0;
-  law_->impacts(state_, [this](std::size_t count) {
+  report_.impacts_left = law_->impacts(state_, [this](std::size_t count) {
     const double norm = keep_free_velocities(state_, 0, count);
     bound_approach_of_impacts(state_, count);
     started_at_ = report_.iterations;

@@ -117,6 +117,7 @@ void FixNscd::check_run()
   held_ = checks_.held_groups();
   others_ = checks_.groups_of_other_fixes_nscd();
   rows_every_step_ = checks_.rows_may_be_read();
+  checks_.tell_of_force_holders();
   excludes_ = false;
   tell_of_exclusions();
 }
@@ -296,7 +297,10 @@ void FixNscd::final_integrate()
       checks_.require_sole_integrator();
       checks_.require_bonds_listed(grains());
     });
-    if (atom->natoms != atoms_told_of_) tell_of_exclusions();
+    if (atom->natoms != atoms_told_of_) {
+      tell_of_exclusions();
+      checks_.tell_of_force_holders();
+    }
   }
   or_stop(error, id, [&] { in_step(update->ntimestep, [&] { step_->advance(grains(), pairs(), update->dt); }); });
   totals_.add(step_->report());

@@ -84,6 +84,36 @@ void SceneChecks::tell_of_other_fixes_nscd() const
                      fix_->id, other->id);
 }
 
+// Whether an atom that this fix moves is in the other's group.
+bool SceneChecks::moves_atoms_of(const Fix &other, int held)
+{
+  const int both = fix_->groupbit | other.groupbit;
+  double there = 0;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if ((atom->mask[i] & both) == both && !(atom->mask[i] & held)) there = 1;
+  ranks_.max({&there, 1});
+  return there > 0;
+}
+
+// Set a force or a part of it: LAMMPS' own contacts are forces too, and grains are held and guided by these fixes.
+// What they set the force to, LAMMPS does not tell, and as a load it is right: so they are no errors.
+void SceneChecks::tell_of_force_holders()
+{
+  const int held = held_groups();   // not in the loop: LAMMPS makes the list of fixes anew for each who asks
+  for (Fix *other : modify->get_fix_list()) {
+    if (!begins_with_one_of(other->style, {"setforce", "lineforce", "planeforce", "aveforce"}) ||
+        holders_told_of_.count(other->id) || !moves_atoms_of(*other, held))
+      continue;
+    holders_told_of_.insert(other->id);
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "Fix nscd {}: fix {} (style {}) sets forces, and impulses of contacts, which are none, move its "
+                     "grains all the same: to hold grains, leave them out of the group of fix {}, or use fix freeze; "
+                     "to keep them in a plane, use dimension 2",
+                     fix_->id, other->id, other->style, fix_->id);
+  }
+}
+
 // Rerun sets up frame after frame and takes no step: what this fix gives out would be that of no frame.
 void SceneChecks::require_steps() const
 {

@@ -7,6 +7,7 @@
 
 #include <pointers.h>
 
+#include <set>
 #include <string>
 
 namespace LAMMPS_NS {
@@ -27,6 +28,8 @@ class SceneChecks : protected Pointers {
   void require_future_bonds_listed() const;
 
   void tell_of_other_fixes_nscd() const;
+  // Again when atoms have come in; each fix once.
+  void tell_of_force_holders();
   // What neigh_modify exclude leaves out of what could be contacts; empty if nothing.
   std::string exclusions(const nscd::Grains &grains);
   // Bits of the groups that fix freeze holds.
@@ -43,9 +46,11 @@ class SceneChecks : protected Pointers {
   template <class First, class Second>
   bool can_meet(const nscd::Grains &grains, First first, Second second);
   bool lists_pairs(int bonds) const;
+  bool moves_atoms_of(const class Fix &other, int held);
 
   class Fix *fix_;
   nscd::MpiRanks &ranks_;
+  std::set<std::string> holders_told_of_;   // IDs of fixes
 };
 
 }    // namespace LAMMPS_NS

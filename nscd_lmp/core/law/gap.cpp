@@ -56,7 +56,7 @@ class Gap final : public Law {
   {
     return settings.restitution > 0 || settings.e_t > 0;
   }
-  void impacts(State &s, const SolvePart &solve) override { resolve_impacts(s, solve); }
+  bool impacts(State &s, const SolvePart &solve) override { return resolve_impacts(s, solve); }
   void set_bias(State &s, std::size_t first) override { set_biases(s, first); }
   void displace(State &s) override;
 

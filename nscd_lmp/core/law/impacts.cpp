@@ -12,7 +12,10 @@ namespace nscd {
 namespace {
 
 constexpr double resting_kicks = 2;    // slower than so many smooth velocity changes of its grains: resting
-constexpr int max_rounds = 50;
+constexpr double most_visits = 50;     // of a contact, in the mean, by the rounds of a step
+constexpr int most_rounds = 1000;      // each looks at all contacts, few as those may be that it visits
+constexpr double cheap_visits = 1000;  // that any step may have
+constexpr double worth_saying = 0.01;  // of the energy that the first round had
 
 // Adds sign times half the smooth velocity change of the step.
 void smooth_half(State &s, double sign)
@@ -32,20 +35,33 @@ void bias_impact(State &s, std::size_t k, double u)
   });
 }
 
-// Brings the contacts of S_m to the front and gives them their bias; returns how many. In place: copies of them would
-// double the memory of a contact.
-std::size_t select_closing(State &s)
+// The contacts of S_m.
+struct Closing {
+  std::size_t here = 0;   // of this rank, at the front
+  double all = 0;         // of all ranks
+  double energy = 0;      // of all ranks, J: what they approach each other with
+};
+
+// Brings the contacts of S_m to the front and gives them their bias. In place: copies of them would double the memory
+// of a contact.
+Closing select_closing(State &s)
 {
   std::size_t closing = 0;
+  double energy = 0;
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
     const double u = normal_velocity(s.contacts[k], s.bodies.data()) + normal_drift(s, k);
     const double slow = resting_kicks * s.infos[k].kick + tolerances * tolerance(s, worth(s.infos[k]));
     if (u >= -slow || std::max(s.infos[k].gap, 0.0) + s.dt * u >= 0) continue;
     swap_contacts(s, k, closing);
+    energy += 0.5 * s.contacts[closing].w_inverse * u * u;
     bias_impact(s, closing++, u);
   }
-  if (s.halo) s.halo->find_touching(s);
-  return closing;
+  double sums[] = {double(closing), energy};
+  if (s.halo) {
+    s.halo->find_touching(s);
+    s.halo->sum(sums);
+  }
+  return {closing, sums[0], sums[1]};
 }
 
 void keep_impulses(State &s, std::size_t closing)
@@ -64,19 +80,24 @@ void keep_impulses(State &s, std::size_t closing)
 
 }    // namespace
 
-void resolve_impacts(State &s, const SolvePart &solve)
+bool resolve_impacts(State &s, const SolvePart &solve)
 {
   s.impact_impulse.clear();
   s.friction.impact_impulse.clear();
   s.per_approach.clear();   // of the last step's contacts, which are others
   smooth_half(s, -1);
-  std::size_t closing = select_closing(s);
-  for (int round = 0; round < max_rounds && sum_everywhere(s, double(closing)) > 0; ++round) {
-    solve(closing);
-    keep_impulses(s, closing);
+  Closing closing = select_closing(s);
+  const double first_energy = closing.energy;
+  double visits = std::max(cheap_visits, most_visits * sum_everywhere(s, double(s.contacts.size())));
+  for (int round = 0; round < most_rounds && closing.all > 0 && visits > 0; ++round) {
+    visits -= closing.all;
+    solve(closing.here);
+    keep_impulses(s, closing.here);
     closing = select_closing(s);
   }
   smooth_half(s, +1);
+  const double e = s.settings.restitution;
+  return e * e * closing.energy > worth_saying * first_energy;
 }
 
 }    // namespace nscd

@@ -8,7 +8,9 @@
 //
 // Makes exact: with theta = 1/2 the free flight, and with e = 1 also the energy, to round-off.
 // Fails: contacts are seen only once they overlap. The overlap is O(dt v) and never given back. In free flight
-// theta < 1/2 gains energy and theta > 1/2 loses it, (theta - 1/2) m g^2 dt^2 a step.
+// theta < 1/2 gains energy and theta > 1/2 loses it, (theta - 1/2) m g^2 dt^2 a step. A grain that a force f presses
+// on something round is pushed on, since the normal is that at q_m and the force that at q_k: its angular momentum
+// grows as exp((1 - theta) dt f t / (m r)), r being the radius of its path.
 #include "../drift_of.hpp"
 #include "../law.hpp"
 
