@@ -73,7 +73,7 @@ def test_grains_that_touch_many_lose_energy_in_every_solved_step(energies, law, 
     # above 1 exact visits may cycle (test_corner_of_friction_1_is_solved_or_reported...); such a step says so
     assert solved.all() or friction in (10.0, "stick")
     if e == e_t:
-        assert stats["energy_limited_steps"][-1] == 0
+        assert stats["energy_limited_steps"][-1] == 0 or not solved.all()
         assert e == 1 or total[-1] < 0.95 * total[0] or friction == 1e-3
 
 

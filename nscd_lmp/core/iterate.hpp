@@ -90,8 +90,8 @@ class Outlook {
 // hardly overshoot. All times are sweeps.
 class Looks {
  public:
-  // `above`: as surely_above has it. The paper counts the visits of a few contacts, so its criterion is taken after each
-  // of the first.
+  // `above`: as surely_above has it. The paper counts the visits of a few contacts, so its criterion is taken after
+  // each of the first.
   Looks(double above, const SolverOptions &options) :
       above_(above), always_(options.stop == Stop::paper ? 4 : 1), budget_(options.budget)
   {

@@ -52,8 +52,8 @@ class Momentum {
 
 // The cap on momentum for sweeps with friction, and the share of their step that visits do once there is none.
 //
-// What a window of sweeps corrects tells whether momentum helps: more than the window before, and 1 - cap grows by half;
-// less, and the cap may rise a little.
+// What a window of sweeps corrects tells whether momentum helps: more than the window before, and 1 - cap grows by
+// half; less, and the cap may rise a little.
 class Caution {
  public:
   double cap() const { return 1 - gap_; }
@@ -76,7 +76,7 @@ class Caution {
 
  private:
   static constexpr int window = 24;
-  static constexpr double narrowest = 0.05;
+  static constexpr double narrowest = 0.02;
 
   double gap_ = 0.2, sum_ = 0, sum_before_ = INFINITY;
   int sweeps_ = 0;
