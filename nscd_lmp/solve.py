@@ -30,8 +30,10 @@ class Solution:
         W p + q, `q` included.
     iterations : int
         Sweeps, or whatever the solver counts.
-    converged : bool
-        Whether the residual is below the tolerance.
+    status : str
+        ``"solved"``: the residual is below the tolerance. ``"accepted"``: it is not, but below 30 times the tolerance
+        after `budget` sweeps. ``"stalled"``: neither, and the best impulses met are returned. ``"diverged"``: impulses
+        ran away; they are of no use.
     residual : float
         What `tol` was compared with: relative (criterion ``"natural"``) or in m/s (``"paper"``).
     history : structured array
@@ -44,10 +46,15 @@ class Solution:
     impulse: Floats
     velocity: Floats
     iterations: int
-    converged: bool
+    status: Literal["solved", "accepted", "stalled", "diverged"]
     residual: float
     history: NDArray[Any] = field(repr=False)
     seconds: float
+
+    @property
+    def converged(self) -> bool:
+        """Whether the residual is below the tolerance."""
+        return self.status == "solved"
 
 
 def solve(
@@ -56,6 +63,7 @@ def solve(
     *,
     tol: float = 1e-8,
     maxiter: int = 10000,
+    budget: int = 0,
     warmstart: ArrayLike | Solution | None = None,
     criterion: Literal["natural", "paper"] = "natural",
     rho: float | None = None,
@@ -72,7 +80,9 @@ def solve(
     tol : float
         The problem is solved when the criterion is below it; in m/s with ``"paper"``.
     maxiter : int
-        Iterations after which it is given up; see `unconverged`.
+        Iterations after which it is given up; see `unconverged`. More never leave a larger residual than fewer.
+    budget : int
+        Sweeps after which the problem is accepted with a residual below 30 times `tol` (``"natural"`` only); 0: never.
     warmstart : array_like (n,) or (n, dim), or Solution, optional
         Impulses to start from, N s. None: 0.
     criterion : str
@@ -107,9 +117,17 @@ def solve(
         raise _core.NscdError(f"the problem is a {type(problem).__name__} and must be a ContactProblem")
     parameter = _parameter(solver, rho, gamma)
     tol, maxiter = _check(tol, maxiter, criterion, unconverged)
-    options = {"solver": solver, "tol": tol, "maxiter": maxiter, "criterion": criterion, "parameter": parameter}
+    budget = _check_budget(budget, criterion)
+    options = {
+        "solver": solver,
+        "tol": tol,
+        "maxiter": maxiter,
+        "budget": budget,
+        "criterion": criterion,
+        "parameter": parameter,
+    }
     found = _run(problem, _start(problem, warmstart), options)
-    if not found.converged and unconverged != "ignore":
+    if found.status in ("stalled", "diverged") and unconverged != "ignore":
         unit = " m/s" if criterion == "paper" else ""
         remedy = "raise maxiter or tol, or choose another solver"
         if found.iterations < maxiter:
@@ -143,6 +161,19 @@ def _parameter(solver: str, rho: float | None, gamma: float | None) -> float | N
             raise _core.NscdError(f"{name} = {given} must be > 0: it is a multiple of 1/W_nn, and None is a good start")
         value = float(given)
     return value
+
+
+def _check_budget(budget: int, criterion: str) -> int:
+    """Return `budget` as a number; refuse one that means nothing."""
+    try:
+        budget = operator.index(budget)
+    except TypeError:
+        raise _core.NscdError(f"budget = {budget!r} must be a whole number") from None
+    if not 0 <= budget < 2**31:
+        raise _core.NscdError(f"budget = {budget} must be at least 0, for never, and below 2^31")
+    if budget > 0 and criterion != "natural":
+        raise _core.NscdError("budget goes with criterion natural: criterion paper does not say how good an answer is")
+    return budget
 
 
 def _check(tol: float, maxiter: int, criterion: str, unconverged: str) -> tuple[float, int]:
@@ -227,5 +258,5 @@ def _solution(found: dict[str, Any], impulse: Floats, velocity: Floats) -> Solut
     for column, name in enumerate(COLUMNS):
         history[name] = rows[:, column]
     return Solution(
-        impulse, velocity, found["iterations"], found["converged"], found["residual"], history, found["seconds"]
+        impulse, velocity, found["iterations"], found["status"], found["residual"], history, found["seconds"]
     )

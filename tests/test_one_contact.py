@@ -188,7 +188,7 @@ def test_diverging_step_stops_the_run_under_unconverged_error(ball, solver):
 @pytest.mark.parametrize("solver", ["sbp", "sal"])
 def test_diverging_steps_are_counted_in_a_warning(ball, solver):
     lmp, _, _ = ball(0.0, (0, 0, -1.0), solver=solver, rho=2.5, law="moreau", gravity=GRAVITY)
-    with pytest.warns(UserWarning, match="1 of 1 steps ended above tol"):
+    with pytest.warns(UserWarning, match="1 of 1 steps were given up above tol"):
         lmp.command("run 1")
 
 

@@ -126,7 +126,7 @@ def test_python_solver_sees_the_problem_of_the_step(start):
 def test_python_solver_that_is_wrong_is_counted_as_not_converged(start):
     lmp = start(grains((0, 0, 0.5), 0.5), 1e-3, gravity=GRAVITY)
     attached = nscd_lmp.attach(lmp, solver=lambda system: np.zeros(len(system)), walls=[FLOOR])
-    with pytest.warns(UserWarning, match="3 of 3 steps ended above tol"):
+    with pytest.warns(UserWarning, match="3 of 3 steps were given up above tol"):
         lmp.command("run 3")
     # without an impulse the ball falls, and the penetration part of (42) is its speed past the gap constraint
     assert attached.stats["penetration"][0] == pytest.approx(GRAVITY * 1e-3, rel=1e-12)

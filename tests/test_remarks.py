@@ -56,7 +56,7 @@ TOLD = {
     overlapping_start: r"grains overlap by up to 0\.05 of the smaller radius: start without overlap, lower tol, or",
     passing: r"grains move by up to 3 of the smallest radius in a step, and law moreau does not see them pass",
     endless: r"in 1 of 1 steps more impacts followed each other than law gap takes one after another, and the rest",
-    unsolved: r"1 of 1 steps ended above tol 1e-12: raise maxiter \(now 1\) or tol",
+    unsolved: r"1 of 1 steps were given up above tol 1e-12, and .* smaller timestep, or raise maxiter \(now 1\) or tol",
 }
 
 

@@ -10,7 +10,7 @@
 #include <nanobind/stl/string.h>
 
 #include <chrono>
-#include <utility>
+#include <cmath>
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -27,17 +27,25 @@ struct Request {
   SolverOptions options;
 };
 
-Request make_request(const std::string &solver, double tol, int maxiter, const std::string &criterion,
+Request make_request(const std::string &solver, double tol, int maxiter, int budget, const std::string &criterion,
                      std::optional<double> parameter, std::vector<SolverReport> &history)
 {
   const SolverEntry &entry = find_solver(solver);
   SolverOptions options;
   options.tol = tol;
   options.maxiter = maxiter;
+  options.budget = budget;
   options.parameter = parameter.value_or(entry.default_parameter);
   options.stop = parse_stop(criterion);
   options.history = &history;
   return {entry, options};
+}
+
+const char *status(const SolverReport &report, double residual)
+{
+  if (report.ran_away || !std::isfinite(residual)) return "diverged";
+  if (report.accepted) return "accepted";
+  return report.converged ? "solved" : "stalled";
 }
 
 // Runs it without the interpreter's lock and puts the outcome into a dictionary, but for impulse and velocity.
@@ -53,8 +61,9 @@ nb::dict outcome(const Request &request, Solve solve)
   nb::dict d;
   d["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   d["iterations"] = report.iterations;
-  d["converged"] = report.converged;
-  d["residual"] = judged(report.criterion, request.options);
+  const double residual = judged(report.criterion, request.options);
+  d["status"] = status(report, residual);
+  d["residual"] = residual;
   const std::vector<SolverReport> &rows = *request.options.history;
   d["history"] = make_array<double>(rows.size(), 6, [&](auto r, auto c) {
     const Criterion &at = rows[r].criterion;
@@ -74,7 +83,7 @@ void add_solution(nb::dict &d, std::size_t n, std::size_t dim, const std::vector
 
 nb::dict solve_matrix(Array<std::int64_t> row_start, Array<std::int32_t> column, Array<double> block, Array<double> q,
                       Array<double> mu, Array<double> start, const std::string &solver, double tol, int maxiter,
-                      const std::string &criterion, std::optional<double> parameter)
+                      int budget, const std::string &criterion, std::optional<double> parameter)
 {
   const std::size_t n = q.shape(0), dim = q.shape(1);
   BlockMatrix w;
@@ -85,7 +94,7 @@ nb::dict solve_matrix(Array<std::int64_t> row_start, Array<std::int32_t> column,
   std::vector<double> p(start.data(), start.data() + start.size()), u(p.size());
   GlobalProblem problem{.w = w, .q = {q.data(), q.size()}, .mu = {mu.data(), mu.size()}, .p = p};
   std::vector<SolverReport> history;
-  const Request request = make_request(solver, tol, maxiter, criterion, parameter, history);
+  const Request request = make_request(solver, tol, maxiter, budget, criterion, parameter, history);
   nb::dict d = outcome(request, [&] { return request.solver.solve_global(problem, request.options); });
   w.multiply(p.data(), u.data());
   for (std::size_t i = 0; i < u.size(); ++i) u[i] += problem.q[i];
@@ -93,8 +102,8 @@ nb::dict solve_matrix(Array<std::int64_t> row_start, Array<std::int32_t> column,
   return d;
 }
 
-// Bodies that many sweeps have changed carry round-off: where that hides what is left of the residual, sweeps go on from
-// bodies that carry just the impulses.
+// Bodies that many sweeps have changed carry round-off: where that hides what is left of the residual, sweeps go on
+// from bodies that carry just the impulses.
 SolverReport solve_on_grains(GrainProblem &grains, const Request &request)
 {
   constexpr int most_times = 4;
@@ -104,13 +113,15 @@ SolverReport solve_on_grains(GrainProblem &grains, const Request &request)
     const int before = times > 0 ? report.iterations : 0;
     const std::size_t rows = options.history->size();
     report = request.solver.solve(grains.problem(), options);
-    const bool met = std::exchange(report.converged, false);
+    const bool met = report.converged;
     options.maxiter -= report.iterations;
     report.iterations += before;
     for (std::size_t row = rows; row < options.history->size(); ++row) (*options.history)[row].iterations += before;
     grains.rebuild_bodies();
     report.criterion = measure(grains.problem());
-    report.converged = solved(report.criterion, request.options);
+    const bool is_solved = solved(report.criterion, request.options);
+    report.accepted = report.accepted && !is_solved && meets(report.criterion, request.options.accepted_goal());
+    report.converged = is_solved || report.accepted;
     if (report.converged || !met) break;
   }
   return report;
@@ -119,13 +130,13 @@ SolverReport solve_on_grains(GrainProblem &grains, const Request &request)
 nb::dict solve_spheres(Array<double> inverse_mass, Array<std::int32_t> body_i, Array<std::int32_t> body_j,
                        Array<double> normal, Array<double> tangents, Array<double> q, Array<double> mu,
                        Array<double> start, double spin_response, const std::string &solver, double tol, int maxiter,
-                       const std::string &criterion, std::optional<double> parameter)
+                       int budget, const std::string &criterion, std::optional<double> parameter)
 {
   const std::size_t n = q.shape(0), dim = q.shape(1);
   GrainProblem grains({n, inverse_mass.size(), dim, inverse_mass.data(), body_i.data(), body_j.data(), normal.data(),
                        tangents.data(), q.data(), mu.size() ? mu.data() : nullptr, start.data(), spin_response});
   std::vector<SolverReport> history;
-  const Request request = make_request(solver, tol, maxiter, criterion, parameter, history);
+  const Request request = make_request(solver, tol, maxiter, budget, criterion, parameter, history);
   nb::dict d = outcome(request, [&] { return solve_on_grains(grains, request); });
   add_solution(d, n, dim, grains.impulses(), grains.velocities());
   return d;
@@ -136,10 +147,10 @@ nb::dict solve_spheres(Array<double> inverse_mass, Array<std::int32_t> body_i, A
 void bind_problems(nb::module_ &m)
 {
   m.def("solve_matrix", &solve_matrix, "row_start"_a, "column"_a, "block"_a, "q"_a, "mu"_a, "start"_a, nb::kw_only(),
-        "solver"_a, "tol"_a, "maxiter"_a, "criterion"_a, "parameter"_a.none());
+        "solver"_a, "tol"_a, "maxiter"_a, "budget"_a, "criterion"_a, "parameter"_a.none());
   m.def("solve_spheres", &solve_spheres, "inverse_mass"_a, "body_i"_a, "body_j"_a, "normal"_a, "tangents"_a, "q"_a,
-        "mu"_a, "start"_a, "spin_response"_a, nb::kw_only(), "solver"_a, "tol"_a, "maxiter"_a, "criterion"_a,
-        "parameter"_a.none());
+        "mu"_a, "start"_a, "spin_response"_a, nb::kw_only(), "solver"_a, "tol"_a, "maxiter"_a, "budget"_a,
+        "criterion"_a, "parameter"_a.none());
 }
 
 }    // namespace nscd

@@ -37,7 +37,9 @@ def closing_table(counts: Counts, seconds: float) -> Table:
     table.add_row("contacts in the last step", f"{counts.step_contacts:.0f}")
     table.add_row("mean iterations per step", f"{counts.iterations / steps:.1f}")
     unconverged = counts.unconverged_steps
-    table.add_row("steps above tol", f"{unconverged:.0f}  {unconverged / steps:5.1%}")
+    table.add_row("steps given up", f"{unconverged:.0f}  {unconverged / steps:5.1%}")
+    if counts.accepted_steps:
+        table.add_row("steps accepted at budget", f"{counts.accepted_steps:.0f}  {counts.accepted_steps / steps:5.1%}")
     table.add_row("worst overlap", f"{counts.worst_overlap:.3g} m")
     table.add_row("worst overlap / radius", f"{counts.worst_overlap_ratio:.3g}")
     table.add_row("energy dissipated by contacts", f"{counts.dissipated_energy:.4g} J")

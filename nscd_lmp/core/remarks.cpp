@@ -30,19 +30,26 @@ std::string rounded(double value)
   return text.str();
 }
 
-std::string told_unconverged(const Settings &s, long unconverged, long steps)
+// What is wrong with the steps that were given up, and what to do.
+std::string told_unconverged(const Settings &s, long unconverged, long steps, double off)
 {
   const std::string bounds = s.overlap ? sentence(*s.tol, " or overlap ", *s.overlap) : sentence(*s.tol);
-  return sentence(unconverged, " of ", steps, " steps ended above tol ", bounds, ": raise maxiter (now ", s.maxiter,
+  const std::string what = s.criterion == Stop::natural
+      ? sentence("their velocities and forces are off by up to ", rounded(off), " of what contacts had to stop")
+      : sentence("their velocities at contacts are off by up to ", rounded(off), " in the mean");
+  return sentence(unconverged, " of ", steps, " steps were given up above tol ", bounds, ", and ", what,
+                  ": take a smaller timestep, or raise maxiter (now ", s.maxiter,
                   s.overlap ? "), tol or overlap" : ") or tol");
 }
 
 }    // namespace
 
-void Remarks::add(const StepReport &r)
+void Remarks::add(const StepReport &r, Stop stop)
 {
   ++steps_;
-  unconverged_ += !r.converged && !r.jammed;
+  const bool given_up = !r.converged && !r.jammed;
+  unconverged_ += given_up;
+  if (given_up) off_ = std::max(off_, stop == Stop::paper ? r.criterion.total() : r.criterion.relative);
   jammed_ += r.jammed;
   if (r.converged && r.criterion.typical > residual_worth_saying) {
     ++misjudged_;
@@ -58,7 +65,7 @@ std::vector<std::string> Remarks::take(const Settings &s, bool looks_ahead)
 {
   std::vector<std::string> said;
   const bool of_solver = s.unconverged != Unconverged::ignore;
-  if (of_solver && unconverged_ > 0) said.push_back(told_unconverged(s, unconverged_, steps_));
+  if (of_solver && unconverged_ > 0) said.push_back(told_unconverged(s, unconverged_, steps_, off_));
   if (of_solver && jammed_ > 0) said.push_back(sentence("in ", jammed_, " of ", steps_, " steps ", nothing_gives_way));
   if (of_solver && misjudged_ > 0 && s.criterion == Stop::paper)
     said.push_back(sentence(misjudged_, " of ", steps_, " steps met tol ", *s.tol, " of criterion (42) with ",

@@ -18,7 +18,8 @@ constexpr std::string_view nothing_gives_way =
 
 class Remarks {
  public:
-  void add(const StepReport &report);
+  // `stop`: the criterion of its solves.
+  void add(const StepReport &report, Stop stop);
   // A sentence, with its remedy, for each thing worth saying of the steps added since the last call. `looks_ahead`: as
   // the contact law does.
   std::vector<std::string> take(const Settings &settings, bool looks_ahead);
@@ -27,7 +28,8 @@ class Remarks {
 
  private:
   long steps_ = 0;
-  long unconverged_ = 0;
+  long unconverged_ = 0;        // given up
+  double off_ = 0;              // by how much, at most
   long jammed_ = 0;             // not counted above
   long misjudged_ = 0;          // called solved, and off by more than residual_worth_saying
   double worst_residual_ = 0;   // of those

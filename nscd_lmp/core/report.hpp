@@ -19,9 +19,9 @@ constexpr int report_columns = int(report_column_names.size());
 double report_column(const StepReport &report, int column);
 
 // f_ID[1][1..] of fix nscd: totals since the fix was made. Not for thermo output: they hold seconds.
-constexpr std::array<std::string_view, 8> totals_column_names{
+constexpr std::array<std::string_view, 9> totals_column_names{
     "steps", "seconds_contacts", "seconds_solver", "worst_overlap", "worst_overlap_ratio", "iterations",
-    "unconverged_steps", "dissipated_energy"};
+    "unconverged_steps", "dissipated_energy", "accepted_steps"};
 constexpr int totals_columns = int(totals_column_names.size());
 
 template <class Number>
@@ -30,7 +30,7 @@ class BasicTotals {
   // A step in which another total has its part already counts 0 steps.
   void add(const StepReport &r, double new_steps = 1)
   {
-    auto &[steps, contacts, solver, overlap, ratio, iterations, unconverged, dissipated] = values_;
+    auto &[steps, contacts, solver, overlap, ratio, iterations, unconverged, dissipated, accepted] = values_;
     steps = steps + new_steps;
     contacts = contacts + r.seconds_contacts;
     solver = solver + r.seconds_solver;
@@ -39,6 +39,7 @@ class BasicTotals {
     iterations = iterations + r.iterations;
     unconverged = unconverged + !r.converged;
     dissipated = dissipated + r.dissipated_in_step;
+    accepted = accepted + (r.converged && r.accepted);
   }
   double column(int column) const { return values_[column]; }
 

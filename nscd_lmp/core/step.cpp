@@ -67,7 +67,7 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
   finish();
   write_back();
   if (grains.watched) left_.remember(state_);
-  remarks_.add(report_);
+  remarks_.add(report_, options_.stop);
   report_.seconds_contacts = seconds(start, Clock::now()) - report_.seconds_solver;
   return report_;
 }
@@ -155,8 +155,8 @@ void Step::share_among_threads(std::size_t contacts)
   if (moved && halo_) halo_->find_touching(state_);
 }
 
-// What is given up or accepted, and with friction Newton's law, is kept from making energy; what a custom solver answers
-// is taken as it is.
+// What is given up or accepted, and with friction Newton's law, is kept from making energy; what a custom solver
+// answers is taken as it is.
 void Step::solve_within_energy(const Part &part, EnergyLimit::From from)
 {
   share_among_threads(part.contacts);

@@ -89,6 +89,7 @@ class Relay {
     report_.iterations += done.iterations;
     report_.criterion = done.criterion;
     report_.converged = done.converged;
+    report_.accepted = done.accepted;
     report_.at_round_off = done.at_round_off;
     report_.ran_away |= done.ran_away;
     left_.maxiter -= done.iterations;
