@@ -203,7 +203,8 @@ def test_energy_of_a_bed_never_exceeds_its_start_and_dies_down(start, law, frict
     balls.omega[:] = 5 * np.random.default_rng(1).normal(size=balls.x.shape)
     lmp = start(balls, dt, gravity=GRAVITY, vmax=20.0)
     options = {"friction": friction, "restitution": e, "e_t": e_t, "walls": box_walls(2.1)}
-    attached = harden(lmp, law=law, tol=1e-7, maxiter=1000, unconverged="ignore", **options)
+    # grains wedged by friction 1 push each other with 3000 times their weight, and what a solve is off by grows with it
+    attached = harden(lmp, law=law, tol=1e-8, maxiter=1000, unconverged="ignore", **options)
     x, v, omega = trajectory(lmp, steps, spins=True)
     k = KINDS[0].k
     motion = np.append(kinetic(balls, k, balls.v, balls.omega), kinetic(balls, k, v, omega))
