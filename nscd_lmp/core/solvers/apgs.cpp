@@ -5,6 +5,7 @@
 // Needs the square root of NLGS' sweeps, about: error modes of a force chain that a sweep shrinks by 1 - c shrink by
 // 1 - sqrt(c). Each costs 1.1 sweeps of NLGS, 1.5 with friction.
 // Makes exact: the motion, p >= 0 and |p_t| <= mu p_n.
+// With friction the last approaches are stopped by sweeps along the normals alone (normal_sweeps.hpp).
 // Fails: Gauss-Seidel's sweep is no gradient step, so momentum has no proof; restarts keep it on course.
 //
 // Source: Nesterov (1983) for the momentum; Mazhar et al. (2015) use it with gradient steps (APGD), which need about as
@@ -12,7 +13,9 @@
 #include "../local/pdas.hpp"
 
 #include "../best_impulses.hpp"
+#include "../body_momentum.hpp"
 #include "../nlgs.hpp"
+#include "../normal_sweeps.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -29,128 +32,6 @@ struct Exact : Pdas {
     return {std::max(0.0, now.impulse - v * w_inverse), 0};
   }
 };
-
-// The inverse mass in a body's fourth place does not change, and stays.
-NSCD_HOT void extrapolate_vectors(double share, const Range &range, Vec4 *vectors, Vec4 *last)
-{
-  for (std::size_t i = range.first; i < range.last; ++i) {
-    const Vec4 now = vectors[i];
-    vectors[i] = now + (now - last[i]) * share;
-    last[i] = now;
-  }
-}
-
-// Bodies and their spins, as they were at the start and as the last sweep left them, to extrapolate from.
-//
-// Round-off between them and the impulses grows by 1 / (1 - beta): `restore` gives bodies that carry their impulses.
-class BodyMomentum {
- public:
-  // `kept`: room for them.
-  BodyMomentum(Problem &problem, AlignedVector<Vec4> &kept) :
-      problem_(problem), kept_(kept), count_(problem.bodies.size())
-  {
-    kept.clear();
-    for (int copies = 0; copies < 2; ++copies) {
-      kept.insert(kept.end(), problem.bodies.begin(), problem.bodies.end());
-      if (problem.sliding.spins) kept.insert(kept.end(), problem.sliding.spins, problem.sliding.spins + count_);
-    }
-  }
-
-  void extrapolate(double share)
-  {
-    Vec4 *const last = kept_.data() + kept_each();
-    in_chunks(problem_.team, count_, [&](const Range &range, int) {
-      extrapolate_vectors(share, range, problem_.bodies.data(), last);
-      if (problem_.sliding.spins) extrapolate_vectors(share, range, problem_.sliding.spins, last + count_);
-    });
-  }
-
-  // add(k) hands contact k's bodies what it has gained since the start. The last sweep is moved along, or the next one
-  // would take the correction for momentum.
-  template <class Add>
-  void restore(Add add)
-  {
-    const Vec4 *const first = kept_.data();
-    move_last(-1);
-    std::copy(first, first + count_, problem_.bodies.begin());
-    if (problem_.sliding.spins) std::copy(first + count_, first + 2 * count_, problem_.sliding.spins);
-    change_across(problem_.halo, problem_.bodies, problem_.sliding.spins, [&] {
-      for (std::size_t k = 0; k < problem_.contacts.size(); ++k) add(k);
-    });
-    move_last(1);
-  }
-
- private:
-  // By the bodies' own velocities; the inverse masses come back.
-  void move_last(double sign)
-  {
-    Vec4 *const last = kept_.data() + kept_each();
-    for (std::size_t i = 0; i < count_; ++i) {
-      last[i] += problem_.bodies[i] * sign;
-      if (problem_.sliding.spins) last[count_ + i] += problem_.sliding.spins[i] * sign;
-    }
-  }
-
-  std::size_t kept_each() const { return problem_.sliding.spins ? 2 * count_ : count_; }
-
-  Problem &problem_;
-  AlignedVector<Vec4> &kept_;
-  const std::size_t count_;
-};
-
-// An exact visit along the normal that leaves the impulse as large as the tangential one needs it.
-struct AtLeast : Pdas {
-  static constexpr bool carries_velocity = true;
-  static Local visit(Local now, double v, double w_inverse, double)
-  {
-    return {std::max(now.velocity, now.impulse - v * w_inverse), now.velocity};
-  }
-};
-
-template <class M>
-void find_least_normals(const Problem &problem, double *least)
-{
-  const auto *const slides = problem.sliding.slides<M>();
-  for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
-    const double needed = slides[k].mu > 0 ? length(slides[k].impulse) / slides[k].mu : 0;
-    least[k] = std::min(needed, problem.contacts[k].impulse);
-  }
-}
-
-NSCD_HOT double largest_approach(const Problem &problem)
-{
-  double largest = 0;
-  for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
-    const Contact &c = problem.contacts[k];
-    largest = std::max(largest, -(normal_velocity(c, problem.bodies.data()) + c.bias) * problem.per_approach[k]);
-  }
-  return problem.halo ? problem.halo->max(largest) : largest;
-}
-
-// Sweeps along the normals, as without friction, with the tangential impulses as they are: until no contact approaches
-// faster than it may. Friction makes that slow, and is not worth it (docs/friction.md). Returns how many.
-int part_normals(Problem &problem)
-{
-  constexpr int most = 300, looked_every = 8;
-  const std::size_t n = problem.contacts.size();
-  std::vector<double> &numbers = problem.workspace.normals;   // impulses before the last sweep, and the least ones
-  numbers.resize(2 * n);
-  double *const least = numbers.data() + n;
-  for (std::size_t k = 0; k < n; ++k) numbers[k] = problem.contacts[k].impulse;
-  with_friction(problem.sliding.model, [&]<class M>(M) { find_least_normals<M>(problem, least); });
-  Pace pace(false);
-  pace.momentum.previous = numbers.data();
-  BodyMomentum bodies(problem, problem.workspace.more_vectors);
-  int sweeps = 0;
-  const auto some = [&](const Range &range) { return sweep<AtLeast, true>(problem, range, least, 1, pace.momentum); };
-  do {
-    for (int k = 0; k < looked_every; ++k, ++sweeps) {
-      bodies.extrapolate(pace.momentum.share());
-      pace.look(sweep_across(problem, some));
-    }
-  } while (sweeps < most && !(largest_approach(problem) <= 1));
-  return sweeps;
-}
 
 constexpr int restored_every = 200;  // sweeps: a pass over the contacts costs nothing then
 
