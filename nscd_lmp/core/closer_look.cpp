@@ -105,7 +105,8 @@ NSCD_HOT double worst_island(const Problem &problem)
   double worst = 0;
   for (int island = 0; island < w.islands.count(); ++island) {
     const auto [residual2, stake2] = w.islands.sum(island);
-    if (residual2 > 0) worst = std::max(worst, stake2 > 0 ? std::sqrt(residual2 / stake2) : 1);
+    // without a stake there is but a contact that does not push, which is judged by its own
+    if (stake2 > 0) worst = std::max(worst, std::sqrt(residual2 / stake2));
   }
   return problem.halo ? problem.halo->max(worst) : worst;
 }

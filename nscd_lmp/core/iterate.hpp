@@ -109,7 +109,7 @@ class Looks {
   // After any look.
   void have_looked(int s)
   {
-    if (s == interval_) interval_ += std::max(1, s / (s < 32 ? 3 : 8));
+    if (s == interval_) interval_ += s < 32 ? s : s / 8;
   }
 
   // After a look at sweep s, whose worst is `excess` times too large. What all contacts have left over goes with what
@@ -130,7 +130,7 @@ class Looks {
     const double rest = a_sweep > 0 ? left / a_sweep : INFINITY;
     left_before_ = left;
     before_ = s;
-    latest_ = s + 1 + int(std::clamp(0.75 * rest - 1, s / 64.0, s / 8.0));
+    latest_ = s + 1 + int(std::clamp(0.75 * rest - 1, s / 16.0, s / 8.0));
     enough_ = 0;
   }
 

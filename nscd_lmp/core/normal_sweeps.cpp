@@ -12,6 +12,8 @@ namespace nscd {
 
 namespace {
 
+constexpr int most = 300, looked_every = 8;   // sweeps
+
 // An exact visit along the normal that leaves the impulse as large as the tangential one needs it.
 struct AtLeast : Pdas {
   static constexpr bool carries_velocity = true;
@@ -41,11 +43,9 @@ NSCD_HOT double largest_approach(const Problem &problem)
   return problem.halo ? problem.halo->max(largest) : largest;
 }
 
-}    // namespace
-
-int part_normals(Problem &problem)
+// On several ranks: all contacts, with momentum.
+int part_all(Problem &problem)
 {
-  constexpr int most = 300, looked_every = 8;
   const std::size_t n = problem.contacts.size();
   std::vector<double> &numbers = problem.workspace.normals;   // impulses before the last sweep, and the least ones
   numbers.resize(2 * n);
@@ -65,5 +65,56 @@ int part_normals(Problem &problem)
   } while (sweeps < most && !(largest_approach(problem) <= 1));
   return sweeps;
 }
+
+// The contacts of grains that approach another too fast.
+NSCD_HOT void find_nearby(Problem &problem)
+{
+  std::vector<char> &fast = problem.workspace.marks;
+  std::vector<std::int32_t> &nearby = problem.workspace.nearby;
+  const Body *const bodies = problem.bodies.data();
+  fast.assign(problem.bodies.size(), 0);
+  nearby.clear();
+  bool any = false;
+  for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
+    const Contact &c = problem.contacts[k];
+    if (-(normal_velocity(c, bodies) + c.bias) * problem.per_approach[k] <= 1) continue;
+    any = true;
+    for (const int body : {c.i, c.j}) fast[body] = bodies[body][3] > 0;
+  }
+  for (std::size_t k = 0; k < problem.contacts.size() && any; ++k)
+    if (fast[problem.contacts[k].i] | fast[problem.contacts[k].j]) nearby.push_back(std::int32_t(k));
+}
+
+NSCD_HOT void sweep_nearby(Problem &problem, const double *least)
+{
+  Body *const bodies = problem.bodies.data();
+  for (const std::int32_t k : problem.workspace.nearby) {
+    Contact &c = problem.contacts[k];
+    const double p = std::max(least[k], c.impulse - (normal_velocity(c, bodies) + c.bias) * c.w_inverse);
+    apply_impulse(c, p - c.impulse, bodies);
+    c.impulse = p;
+  }
+}
+
+// On one rank: where it is needed. Returns the sweeps that its visits come to.
+int part_nearby(Problem &problem)
+{
+  const std::size_t n = problem.contacts.size();
+  std::vector<double> &least = problem.workspace.normals;
+  least.resize(n);
+  with_friction(problem.sliding.model, [&]<class M>(M) { find_least_normals<M>(problem, least.data()); });
+  std::size_t visits = 0;
+  for (int sweeps = 0; sweeps < most; sweeps += looked_every) {
+    find_nearby(problem);
+    if (problem.workspace.nearby.empty()) break;
+    for (int s = 0; s < looked_every; ++s) sweep_nearby(problem, least.data());
+    visits += n + looked_every * problem.workspace.nearby.size();
+  }
+  return int((visits + n - 1) / n);
+}
+
+}    // namespace
+
+int part_normals(Problem &problem) { return problem.halo ? part_all(problem) : part_nearby(problem); }
 
 }    // namespace nscd

@@ -27,6 +27,7 @@ struct Workspace {
   std::vector<double> normals{};
   AlignedVector<Vec4> vectors{}, more_vectors{};
   std::vector<char> marks{};   // of bodies
+  std::vector<std::int32_t> nearby{};   // contacts
   std::vector<Joined> joined{};
   Islands islands{};
 };
