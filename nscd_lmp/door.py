@@ -98,12 +98,12 @@ def attach(
     e_t : float
         Tangential restitution, 0 to 1.
     accuracy : str, optional
-        How good the answers are, where `tol`, `overlap` and `budget` are None, with the criterion ``"natural"``: None is
-        ``"normal"``; ``"loose"`` is for grains that fall and flow, ``"tight"`` for beds that must stand still. What each
-        buys: docs/friction_accuracy.md.
+        How good the answers are, where `tol`, `overlap` and `budget` are None, with the criterion ``"natural"``: None
+        is ``"normal"``; ``"loose"`` is for grains that fall and flow, ``"tight"`` for beds that must stand still. What
+        each buys: docs/friction_accuracy.md.
     tol : float, optional
-        A step is solved when the criterion is below it. None: 1e-3 with ``"natural"`` (1e-2 loose, 1e-4 tight), 1e-7 m/s
-        with ``"paper"``.
+        A step is solved when the criterion is below it. None: 1e-3 with ``"natural"`` (1e-2 loose, 1e-4 tight), 1e-7
+        m/s with ``"paper"``.
     criterion : str, optional
         ``"natural"``: the natural map of all contacts over the norm of their velocities without impulses, as in
         :func:`nscd_lmp.solve`. ``"paper"``: (42) of Barboteu & Dumont (2017), in m/s, the mean over the contacts.
@@ -113,9 +113,9 @@ def attach(
         smaller radius.
         None: 5e-4 with the criterion ``"natural"`` (1e-3 loose, 1e-4 tight), no such condition with ``"paper"``.
     budget : int, optional
-        Sweeps after which a step is accepted that is above `tol`, but below 30 `tol` and within `overlap`; it is counted
-        in the column ``accepted_steps``. 0: never. None: 30 with friction and the criterion ``"natural"`` (10 loose, 300
-        tight), 0 otherwise.
+        Sweeps after which a step is accepted that is above `tol`, but below 30 `tol` and within `overlap`; it is
+        counted in the column ``accepted_steps``. 0: never. None: 30 with friction and the criterion ``"natural"`` (10
+        loose, 300 tight), 0 otherwise.
     maxiter : int
         Iterations after which a step is given up; see `unconverged`.
     warmstart : bool, optional
