@@ -80,6 +80,33 @@ FILES = {
         },
         "friction_laws.png": None,
     },
+    "friction_accuracy": {
+        "friction_accuracy.csv": {
+            "part",
+            "grains",
+            "accuracy",
+            "friction",
+            "dt",
+            "seed",
+            "cpu_seconds",
+            "frictionless_cpu_seconds",
+            "sweeps_per_step",
+            "accepted_steps",
+            "given_up_steps",
+            "overlap_ratio",
+            "height",
+            "floor_ratio",
+            "walls_ratio",
+            "pushing_contacts",
+            "force_variation",
+            "stress_ratio",
+            "creep",
+            "residual",
+            "last_correction",
+            "stiffness",
+            "part_of_contact",
+        }
+    },
     "solvers": {
         "solvers.csv": {
             "part",
