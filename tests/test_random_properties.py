@@ -69,9 +69,10 @@ def test_random_scenes_are_the_same_through_all_doors() -> None:
         lengths = np.diag(random_scenes.place(scene).edges)
         for number in range(steps):
             one, other = (record.states[number].x for record in (python, script))
-            wraps = np.round((one - other) / lengths)
-            if wraps.any():  # one door has built a list earlier, and what is wrapped is rounded
-                if scene.deforms == "none":
+            # One door has built a list earlier, and what is wrapped is rounded; in a box that moves by its edges then.
+            if (np.abs(one - other) > 0.2 * lengths).any():
+                if not scene.deforms:
+                    wraps = np.round((one - other) / lengths)
                     np.testing.assert_allclose(one - wraps * lengths, other, rtol=0, atol=1e-13 * lengths.max())
                 return
             for name in ("x", "v", "omega"):
