@@ -115,7 +115,7 @@ def attach(
     budget : int, optional
         Sweeps after which a step is accepted that is above `tol`, but below 30 `tol` and within `overlap`; the column
         ``accepted_steps`` counts them. 0: never. None: 30 with friction and the criterion ``"natural"`` (10 loose,
-        300 tight), 0 otherwise.
+        300 tight), and more where there are less than 2000 contacts, 2000 visits of contacts for each; 0 otherwise.
     maxiter : int
         Iterations after which a step is given up; see `unconverged`.
     warmstart : bool, optional

@@ -154,8 +154,7 @@ def test_turned_bed_moves_turned(start, beds, solver, angle):
 @EVERY_SOLVER
 def test_heap_on_a_floor_that_holds_its_grains_is_solved_or_reported(start, beds, solver, law, dim):
     # Contacts that stick at any cost need not have a solution (test_coulomb.py), nor one with unique velocities, so the
-    # answer itself is looked at. The disc heap has one. For the heap of spheres neither the package nor the reference
-    # finds any, and the step says so.
+    # answer itself is looked at. The disc heap has one; where none is found the step says so.
     balls = shaken(beds[dim], 1.0, dim)
     systems: list[Any] = []
 
@@ -167,7 +166,8 @@ def test_heap_on_a_floor_that_holds_its_grains_is_solved_or_reported(start, beds
         options: dict[str, Any] = {"walls": walls(dim, "stick", False), "maxiter": 10000, "unconverged": "ignore"}
         velocity, attached = one_step(start, balls, dim, solver=taken, law=law, **options)
     solved = attached.stats["unconverged_steps"][0] == 0
-    assert solved == (dim == 2) == (attached.stats["criterion"][0] < TOL)
+    assert solved == (attached.stats["criterion"][0] < TOL)
+    assert solved or dim == 3
     assert np.abs(velocity).max() <= 2 * max(np.abs(balls.v).max(), np.abs(balls.omega * balls.radius[:, None]).max())
     if solved:
         given, p = contact_problem(systems[0]), impulses(systems[0], attached.contacts)

@@ -142,6 +142,7 @@ def test_stats_have_a_row_a_step_with_the_seconds(start):
     assert stats["step"].tolist() == list(range(1, 301))
     columns = "contacts iterations criterion motion bipotential penetration relative_residual largest_overlap"
     columns += " dissipated_energy largest_overlap_ratio unconverged_steps energy_limited_steps worst_residual"
+    columns += " accepted_steps"
     columns += " seconds_contacts seconds_solver"
     assert stats.dtype.names == ("step", *columns.split())
     parts = stats["motion"] + stats["bipotential"] + stats["penetration"]

@@ -120,13 +120,24 @@ void EnergyLimit::find_work(const State &s, std::size_t count, const Motion *bef
   if (s.halo) work[0] = s.halo->sum(work[0]);
 }
 
+// Contacts that overlap are pushed apart at the speed in their biases.
+void EnergyLimit::allow_recovery(const State &s, std::size_t count)
+{
+  for (std::size_t k = 0; k < count; ++k) {
+    const Contact &c = s.contacts[k];
+    const double apart = s.infos[k].gap < 0 ? std::max(0.0, normal_drift(s, k) - c.bias) : 0;
+    limit_[islands_.of(grain_of(c, s.bodies.data()))] += apart * c.impulse;
+  }
+}
+
 // What every island's work is now, in first_, and what of it is the solver's own error. Returns whether any makes more
 // than that, on any rank.
-bool EnergyLimit::find_excess(State &s, std::size_t count, const Motion *before)
+bool EnergyLimit::find_excess(State &s, std::size_t count, const Motion *before, bool gives_back)
 {
   find_islands(s, count);
   find_work(s, count, before, at_first_);
   limit_.assign(islands_.count(), 0);
+  if (gives_back) allow_recovery(s, count);
   for (std::size_t k = 0; k < count; ++k) {
     const Contact &c = s.contacts[k];
     const double error = tolerances * tolerance(s, worth(s.infos[k])) * std::abs(c.impulse);
@@ -171,7 +182,7 @@ bool EnergyLimit::limit_restitution(State &s, std::size_t count, From from, cons
   return true;
 }
 
-bool EnergyLimit::limit_unsolved(State &s, std::size_t count)
+bool EnergyLimit::limit_unsolved(State &s, std::size_t count, bool gives_back)
 {
   store(s, count, first_);
   change_across(s.halo, s.bodies, s.friction.spins.data(), [&] {
@@ -179,19 +190,20 @@ bool EnergyLimit::limit_unsolved(State &s, std::size_t count)
   });
   store(s, count, second_);
   load(s, first_);
-  if (!find_excess(s, count, &second_)) return false;
+  if (!find_excess(s, count, &second_, gives_back)) return false;
   blend(s, count, &second_, 1);
   return true;
 }
 
-bool EnergyLimit::solve(State &s, std::size_t count, bool newton, From from, const std::function<bool()> &solver)
+bool EnergyLimit::solve(State &s, std::size_t count, bool newton, From from, bool gives_back,
+                        const std::function<bool()> &solver)
 {
   bool solved = true;
   const auto watched = [&] { return solved = solver() && solved; };
   if (newton) store(s, count, before_);
   watched();
   bool limited = newton && limit_restitution(s, count, from, watched);
-  if (!solved) limited |= limit_unsolved(s, count);
+  if (!solved) limited |= limit_unsolved(s, count, gives_back);
   return limited;
 }
 

@@ -26,9 +26,10 @@ class EnergyLimit {
   enum class From { step, solve };
 
   // Solves for the first `count` contacts. `newton`: their biases hold restitution e != e_t, so they may be solved
-  // twice; they then start from no impulses, or `from` is the step. `solver` returns whether it solved the problem.
-  // Returns whether the solution had to be blended.
-  bool solve(State &state, std::size_t count, bool newton, From from, const std::function<bool()> &solver);
+  // twice; they then start from no impulses, or `from` is the step. `gives_back`: their biases give overlaps back,
+  // which may do work. `solver` returns whether it solved the problem. Returns whether the solution had to be blended.
+  bool solve(State &state, std::size_t count, bool newton, From from, bool gives_back,
+             const std::function<bool()> &solver);
 
  private:
   struct Motion {
@@ -42,10 +43,11 @@ class EnergyLimit {
   void load_blend(State &state, std::size_t count) const;
   void find_islands(const State &state, std::size_t count);
   void find_work(const State &state, std::size_t count, const Motion *before, std::vector<double> &work);
-  bool find_excess(State &state, std::size_t count, const Motion *before);
+  bool find_excess(State &state, std::size_t count, const Motion *before, bool gives_back = false);
   void blend(State &state, std::size_t count, const Motion *before, double of_limit);
   bool limit_restitution(State &state, std::size_t count, From from, const std::function<bool()> &solver);
-  bool limit_unsolved(State &state, std::size_t count);
+  bool limit_unsolved(State &state, std::size_t count, bool gives_back);
+  void allow_recovery(const State &state, std::size_t count);
 
   Motion before_, first_, second_;
   Islands islands_;

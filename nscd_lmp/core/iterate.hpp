@@ -92,8 +92,7 @@ class Looks {
  public:
   // `above`: as surely_above has it. The paper counts the visits of a few contacts, so its criterion is taken after
   // each of the first.
-  Looks(double above, const SolverOptions &options) :
-      above_(above), always_(options.stop == Stop::paper ? 4 : 1), budget_(options.budget)
+  Looks(double above, Stop stop, int budget) : above_(above), always_(stop == Stop::paper ? 4 : 1), budget_(budget)
   {
   }
 
@@ -160,7 +159,8 @@ SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep o
   const double above = surely_above(extent, options);
   Outlook outlook(options.alternative, above / 4);
   RunAway run_away(above);
-  Looks looks(above, options);
+  const int budget = options.budget > 0 ? std::max(options.budget, int(options.visits / double(extent.contacts))) : 0;
+  Looks looks(above, options.stop, budget);
   if (Keeps::keeps) looks.at_intervals();
   Criterion seen;
   bool any = false;
@@ -175,7 +175,7 @@ SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep o
       continue;
     }
     looks.have_looked(s);
-    const bool accepts = options.budget > 0 && s >= options.budget;
+    const bool accepts = budget > 0 && s >= budget;
     const Goal goal = accepts ? options.accepted_goal() : options.goal();
     const Criterion now = look(goal);
     const bool better = !any || is_better(now, seen, options);

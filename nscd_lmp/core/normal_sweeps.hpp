@@ -5,9 +5,9 @@
 
 namespace nscd {
 
-// Visits along the normals, as without friction, with the tangential impulses as they are and normal ones not below what
-// Coulomb's law needs for them, until no contact approaches faster than it may: friction makes that slow, and changes
-// nothing that can be seen (docs/solvers.md). Returns the sweeps that they come to.
+// Visits along the normals, as without friction, with the tangential impulses as they are and normal ones not below
+// what Coulomb's law needs for them, until no contact approaches faster than it may: friction makes that slow, and
+// changes nothing that can be seen (docs/solvers.md). Returns the sweeps that they come to.
 int part_normals(Problem &problem);
 
 }    // namespace nscd

@@ -154,13 +154,19 @@ static void choose_tolerance(Settings &s)
          "velocities that contacts have to stop. A tolerance in velocity units has `criterion paper` beside it");
 }
 
-// A budget is for what has no single answer, and for a criterion that says how good an answer is.
-static void choose_budget(Settings &s)
+Budget budget_of(const Settings &s)
 {
-  const bool fits = s.frictional() && s.criterion == Stop::natural;
-  if (!s.budget) s.budget = fits ? numbers(s).budget : 0;
-  if (*s.budget < 0) fail("budget = ", *s.budget, " must be at least 0: sweeps after which a step may be accepted, 0 ",
-                          "for never");
+  constexpr double contacts = 2000;   // more than that cost what they cost
+  if (s.budget) return {*s.budget, 0};
+  if (!s.frictional() || s.criterion != Stop::natural) return {};
+  return {numbers(s).budget, contacts * numbers(s).budget};
+}
+
+static void check_budget(const Settings &s)
+{
+  if (!s.budget) return;
+  if (*s.budget < 0)
+    fail("budget = ", *s.budget, " must be at least 0: sweeps after which a step may be accepted, 0 for never");
   if (*s.budget > 0 && s.criterion != Stop::natural)
     fail("budget goes with criterion natural: criterion paper does not say how good an answer is");
 }
@@ -183,7 +189,7 @@ Settings checked(Settings s, int dimension)
   require_range("theta", s.theta, 0, 1);
   require_range("recovery", s.recovery, 0, 1);
   choose_tolerance(s);
-  choose_budget(s);
+  check_budget(s);
   check_overlap(s);
   if (s.maxiter < 1) fail("maxiter = ", s.maxiter, " must be at least 1");
   if (s.frictional() && !solver.friction)

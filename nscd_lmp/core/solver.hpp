@@ -32,7 +32,9 @@ struct SolverOptions {
   int maxiter = 1000;
   double parameter = 1;  // rho or gamma as a multiple of 1/W_nn
   Stop stop = Stop::paper;
-  int budget = 0;    // sweeps after which an answer within accepted_goal() is good enough; 0: none ever is
+  // Sweeps and visits of contacts after which an answer within accepted_goal() is good enough; 0 sweeps: none ever is.
+  int budget = 0;
+  double visits = 0;
   Goal goal() const { return {stop, tol}; }
   // Of the natural map; the same bound on approaches.
   Goal accepted_goal() const 

@@ -39,7 +39,8 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
   options_.stop = *settings_.criterion;
   (options_.stop == Stop::natural ? state_.tol_of_worth : state_.tol_absolute) = options_.tol;
   options_.maxiter = settings_.maxiter;
-  options_.budget = *settings_.budget;
+  options_.budget = budget_of(settings_).sweeps;
+  options_.visits = budget_of(settings_).visits;
   options_.parameter = solver_parameter(settings_, *solver_);
   const Inertia inertia = settings_.inertia.value_or(dimension == 2 ? Inertia::disc : Inertia::sphere);
   state_.friction.model = choose_model(settings_, dimension);
@@ -162,8 +163,9 @@ void Step::solve_within_energy(const Part &part, EnergyLimit::From from)
   share_among_threads(part.contacts);
   const bool newton = state_.friction.model != Model::frictionless && part.e != part.e_t;
   const auto solve = [&] { return solve_part(part, options_.maxiter) && !report_.accepted; };
+  const bool gives_back = law_->looks_ahead() && from == EnergyLimit::From::step;
   if (custom_) solve();
-  else energy_limited_ |= energy_limit_.solve(state_, part.contacts, newton, from, solve);
+  else energy_limited_ |= energy_limit_.solve(state_, part.contacts, newton, from, gives_back, solve);
 }
 
 SolverReport Step::solve_problem(Problem &problem, const SolverOptions &options)
