@@ -150,7 +150,7 @@ def test_grains_that_grow_part_in_accepted_steps_too() -> None:
     balls.x[:] = [(1e-3 * k - 1e-9 * k, 0, 1e-3) for k in range(12)]
     lmp = start(balls, 1e-3, vmax=0.1, box=[(-2e-3, 14e-3), (-2e-3, 2e-3), (-2e-3, 4e-3)])
     bed = harden(lmp, friction=0.3, criterion="natural", tol=1e-12, budget=1)
-    lmp.command("set group all diameter 1.001e-3")
+    lmp.commands_list(["run 1", "set group all diameter 1.001e-3"])
     lmp.command("run 1")
     assert bed.stats["energy_limited_steps"][-1] == 0
     assert np.ptp(state(lmp)[1][:, 0]) > 1e-6
