@@ -59,7 +59,8 @@ def dropped(panel: str, options: dict[str, Any]) -> Seen:
         balls = grains(0.021 * corner + (0.011, 0.011, 0.011 + DROP) + 4e-4 * random, RADIUS)
         walls = sides(0.064)
     scale = GRAVITY * DROP * float(balls.mass.sum())
-    return hard(balls, DT, STEPS, walls, Look(50, scale), reach=0.02, **options)
+    # elastic balls can gather so much in one that it leaves the others far below
+    return hard(balls, DT, STEPS, walls, Look(50, scale), reach=0.02, room=1.0, **options)
 
 
 def tied(options: dict[str, Any]) -> Seen:
