@@ -142,7 +142,7 @@ struct Known {
   std::string_view law;
   int spatial, planar;
 };
-constexpr Known known[] = {{"sbp", 16, 16}, {"sal", 0, 0}, {"ebp", 0, 0}, {"eal", 0, 0}, {"pdas", 0, 0}};
+constexpr Known known[] = {{"sbp", 16, 14}, {"sal", 0, 0}, {"ebp", 0, 0}, {"eal", 0, 0}, {"pdas", 0, 0}};
 constexpr double allowed_share = 0.005;  // for a law that is not listed
 
 struct Outcome {

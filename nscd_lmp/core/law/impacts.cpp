@@ -13,7 +13,8 @@ namespace {
 
 constexpr double resting_kicks = 2;    // slower than so many smooth velocity changes of its grains: resting
 constexpr double most_visits = 50;     // of a contact, in the mean, by the rounds of a step
-constexpr int most_rounds = 1000;      // each looks at all contacts, few as those may be that it visits
+// Each round looks at all contacts, few as those may be that it visits: so many looks, within these rounds.
+constexpr double most_looks = 5e6, least_rounds = 50, most_rounds = 1000;
 constexpr double cheap_visits = 1000;  // that any step may have
 constexpr double worth_saying = 0.01;  // of the energy that the first round had
 
@@ -88,8 +89,10 @@ bool resolve_impacts(State &s, const SolvePart &solve)
   smooth_half(s, -1);
   Closing closing = select_closing(s);
   const double first_energy = closing.energy;
-  double visits = std::max(cheap_visits, most_visits * sum_everywhere(s, double(s.contacts.size())));
-  for (int round = 0; round < most_rounds && closing.all > 0 && visits > 0; ++round) {
+  const double contacts = sum_everywhere(s, double(s.contacts.size()));
+  const double rounds = std::clamp(most_looks / std::max(contacts, 1.0), least_rounds, most_rounds);
+  double visits = std::max(cheap_visits, most_visits * contacts);
+  for (int round = 0; round < rounds && closing.all > 0 && visits > 0; ++round) {
     visits -= closing.all;
     solve(closing.here);
     keep_impulses(s, closing.here);
