@@ -170,7 +170,8 @@ SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep o
     run_away.look(corrected);
     report.iterations = s;
     const bool last = s == options.maxiter || outlook.is_worse_than_alternative(corrected);
-    if (!looks.is_due(s, corrected) && (!last || Keeps::keeps)) {
+    const bool broken = !std::isfinite(corrected);   // nothing good can be restored from what is no number
+    if (!broken && !looks.is_due(s, corrected) && (!last || Keeps::keeps)) {
       if (last) break;
       continue;
     }
@@ -186,7 +187,7 @@ SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep o
     report.accepted = report.converged && !solved(now, options);
     report.ran_away = run_away.has_happened();
     if (options.history) options.history->push_back(report);
-    if (report.converged) return report;
+    if (report.converged || broken) return report;
     if (better) best.keep();
     if (last || report.ran_away) break;
     const double over = excess(now, goal);

@@ -24,7 +24,7 @@ struct SolverReport {
   Criterion criterion;
 };
 
-// Sweeps with friction end where more of them change nothing that can be seen (docs/friction.md).
+// Sweeps with friction end where more of them change nothing that can be seen (docs/friction_accuracy.md).
 constexpr double accepted_tolerances = 30, most_accepted = 0.1;
 
 struct SolverOptions {
@@ -37,7 +37,7 @@ struct SolverOptions {
   double visits = 0;
   Goal goal() const { return {stop, tol}; }
   // Of the natural map; the same bound on approaches.
-  Goal accepted_goal() const 
+  Goal accepted_goal() const
   {
     return {stop, std::min(accepted_tolerances * tol, most_accepted), off_of_accepted};
   }
