@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -46,3 +47,21 @@ def test_lines_of_cpp_files_have_120_characters_at_most() -> None:
         if len(line) > 120
     ]
     assert long == []
+
+
+def hot_functions() -> dict[str, str]:
+    """Return the bodies of the functions that are compiled for several processors (core/hot.hpp), by their place."""
+    bodies = {}
+    for path in sorted((ROOT / "nscd_lmp").rglob("*.[ch]pp")):
+        for part in re.split(r"\bNSCD_HOT\b(?! __attr)", path.read_text())[1:]:
+            head, brace, rest = part.partition("\n{\n")
+            if brace:
+                bodies[f"{path.relative_to(ROOT)}: {head.split('(')[0].split()[-1]}"] = rest.partition("\n}")[0]
+    return bodies
+
+
+# GCC takes them for functions that never throw: an exception that leaves one ends the program.
+def test_hot_functions_raise_no_errors() -> None:
+    bodies = hot_functions()
+    assert len(bodies) > 20
+    assert [place for place, body in bodies.items() if re.search(r"\b(fail|refuse\w*|require\w*|throw)\b", body)] == []

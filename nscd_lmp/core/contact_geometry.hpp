@@ -36,8 +36,11 @@ inline std::uint64_t contact_key(const State &s, const Candidate &c)
   return (std::uint64_t(std::min(tag, other)) << 32) | std::max(tag, other);
 }
 
-[[noreturn]] inline void refuse_overlap(const State &s, const Candidate &c, double gap)
+// Contact k overlaps beyond the smaller radius.
+[[noreturn]] inline void refuse_overlap(const State &s, std::size_t k)
 {
+  const Candidate c{s.infos[k].atom_i, s.infos[k].atom_j};
+  const double gap = s.infos[k].gap;
   const auto &g = s.grains;
   if (is_wall(c))
     fail("grain ", g.tag[c.atom_i], " is ", -gap, " inside wall ", wall_index(c) + 1, ", more than its radius ",
@@ -47,8 +50,8 @@ inline std::uint64_t contact_key(const State &s, const Candidate &c)
        ": remove one of them, or take a smaller timestep if they were apart before");
 }
 
-// Fills contact number k. Impulse and bias are left 0. Raises Error for an overlap beyond the smaller radius.
-NSCD_INLINE void place_contact(State &s, std::size_t k, const Candidate &c)
+// Fills contact number k. Impulse and bias are left 0. Returns whether it fits: no overlap beyond the smaller radius.
+NSCD_INLINE bool place_contact(State &s, std::size_t k, const Candidate &c)
 {
   const Sphere &a = s.spheres[c.atom_i];
   const int i = s.owner[c.atom_i];
@@ -70,12 +73,12 @@ NSCD_INLINE void place_contact(State &s, std::size_t k, const Candidate &c)
     j = s.owner[c.atom_j];
     before -= start_velocity(s, j);
   }
-  if (gap < -smaller) refuse_overlap(s, c, gap);
   const double w = s.bodies[i][3] + s.bodies[j][3];
   s.contacts[k] = {normal, 0.0, 1 / w, 0.0, i, j};
   if (!s.drift.of.empty()) before += drift_of(s, c, normal);
   s.infos[k] = {gap, dot(normal, before), contact_key(s, c), c.atom_i, c.atom_j,
                 smaller, std::max(s.kicks[i], s.kicks[j]), 0.0};
+  return !(gap < -smaller);
 }
 
 }    // namespace nscd

@@ -3,6 +3,8 @@
 #include "contact_geometry.hpp"
 #include "drifted.hpp"
 
+#include <optional>
+
 namespace nscd {
 
 namespace {
@@ -54,22 +56,28 @@ NSCD_INLINE double gap_of(const Sphere &a, const Sphere &b)
   return std::sqrt(dot(separation, separation)) - a.radius - b.radius;
 }
 
+bool is_own_image(const State &s, const Candidate &c) { return s.owner[c.atom_i] == s.owner[c.atom_j]; }
+
 // A grain can be no contact of itself, so a box that is narrower than a grain would hold an overlap that nothing sees.
-void refuse_narrow_box(const State &s, const Candidate &c)
+bool overlaps_own_image(const State &s, const Candidate &c)
 {
   constexpr double touches = 1e-9;
   const Sphere &grain = s.spheres[c.atom_i];
-  const double gap = gap_of(grain, s.spheres[c.atom_j]);
-  if (gap < -touches * grain.radius && s.bodies[s.owner[c.atom_i]][3] > 0)
-    fail("grain ", s.grains.tag[c.atom_i], " overlaps its own periodic image by ", -gap, ": the box must be wider ",
-         "than the grain's diameter ", 2 * grain.radius);
+  return is_own_image(s, c) && s.bodies[s.owner[c.atom_i]][3] > 0 &&
+      gap_of(grain, s.spheres[c.atom_j]) < -touches * grain.radius;
+}
+
+[[noreturn]] void refuse_narrow_box(const State &s, const Candidate &c)
+{
+  const Sphere &grain = s.spheres[c.atom_i];
+  fail("grain ", s.grains.tag[c.atom_i], " overlaps its own periodic image by ", -gap_of(grain, s.spheres[c.atom_j]),
+       ": the box must be wider than the grain's diameter ", 2 * grain.radius);
 }
 
 // Not a contact: a grain and its own image, two obstacles, or a pair that the list has a second time.
 bool is_void(const State &s, const Candidate &c, const PairList &pairs)
 {
   const int i = s.owner[c.atom_i], j = s.owner[c.atom_j];
-  if (i == j) refuse_narrow_box(s, c);
   if (i == j || s.bodies[i][3] + s.bodies[j][3] == 0) return true;
   return pairs.cross_pairs_twice && c.atom_j >= s.grains.owned && s.grains.tag[c.atom_i] > s.grains.tag[c.atom_j];
 }
@@ -80,14 +88,19 @@ NSCD_INLINE void make_room(std::vector<Watched> &near, std::size_t count)
   if (count >= near.size()) near.resize(std::max(near.capacity(), 2 * count + 64));
 }
 
-// Sorts what was found into contacts-to-be and watched pairs, without branching on which it is.
-NSCD_HOT void sort_pairs(State &s, const PairList &pairs)
+// Sorts what was found into contacts-to-be and watched pairs, without branching on which it is. Returns a grain and its
+// image that overlap, if there are such.
+NSCD_HOT std::optional<Candidate> sort_pairs(State &s, const PairList &pairs)
 {
+  std::optional<Candidate> narrow;
   s.touching.resize(s.found_count);
   std::size_t touching = 0, near = 0;
   for (std::size_t k = 0; k < s.found_count; ++k) {
     const Candidate c = s.found[k];
-    if (is_void(s, c, pairs)) continue;
+    if (is_void(s, c, pairs)) {
+      if (!narrow && overlaps_own_image(s, c)) narrow = c;
+      continue;
+    }
     const Sphere &a = s.spheres[c.atom_i], &b = s.spheres[c.atom_j];
     const double gap = gap_of(a, b);
     const bool reaches = !(gap > a.reach + b.reach);   // not-a-number does, and is refused
@@ -100,6 +113,7 @@ NSCD_HOT void sort_pairs(State &s, const PairList &pairs)
   make_room(s.near, near);
   s.touching.resize(touching);
   s.near.resize(near);
+  return narrow;
 }
 
 // Those of the contacts-to-be that are not foreseen are watched instead.
@@ -155,13 +169,22 @@ void sort_wall(State &s, int wall)
 // without AVX2 and criterion, on a bed of 500; the sweep count changes by 1 %); more places than 8 gain nothing.
 constexpr std::size_t streams = 8;
 
-NSCD_HOT void place_range(State &s, const Range &range)
+// Returns the first contact that does not fit, or as many as there are.
+NSCD_HOT std::size_t place_range(State &s, const Range &range)
 {
+  std::size_t unfit = s.contacts.size();
   const std::size_t length = (range.size() + streams - 1) / streams;
   std::size_t k = range.first;
   for (std::size_t place = range.first; place < range.first + length; ++place)
     for (std::size_t listed = place; listed < range.last; listed += length, ++k)
-      place_contact(s, k, s.touching[listed]);
+      if (!place_contact(s, k, s.touching[listed])) unfit = std::min(unfit, k);
+  return unfit;
+}
+
+void place_all_of(State &s, const Range &range)
+{
+  const std::size_t unfit = place_range(s, range);
+  if (unfit < s.contacts.size()) refuse_overlap(s, unfit);
 }
 
 void place_contacts(State &s)
@@ -169,10 +192,10 @@ void place_contacts(State &s)
   const std::size_t n = s.touching.size();
   resize_closely(s.contacts, n);
   resize_closely(s.infos, n);
-  if (s.slabs.count() == 1) return place_range(s, {0, n});
+  if (s.slabs.count() == 1) return place_all_of(s, {0, n});
   s.slabs.divide(s);
   s.slabs.order_candidates(s);
-  for (int part = 0; part < s.slabs.parts().count(); ++part) place_range(s, s.slabs.parts().range(part));
+  for (int part = 0; part < s.slabs.parts().count(); ++part) place_all_of(s, s.slabs.parts().range(part));
 }
 
 // How far grains get at most, be it by displacement or by dt v_{k+1}.
@@ -217,6 +240,7 @@ void watch_pairs_beyond(State &s, const PairList &pairs, double watched)
     for (int k = 0; k < pairs.neighbors[entry]; ++k) {
       const Candidate c{pairs.atom[entry], pairs.first[entry][k] & neighbor_index_mask};
       if (!is_within(c.atom_i, c.atom_j, s.watch) || is_within(c.atom_i, c.atom_j, watched)) continue;
+      if (overlaps_own_image(s, c)) refuse_narrow_box(s, c);
       if (!is_void(s, c, pairs)) s.near.push_back({c, gap_of(s.spheres[c.atom_i], s.spheres[c.atom_j])});
     }
 }
@@ -274,7 +298,7 @@ NSCD_INLINE void note_overlap(State &s, const Candidate &c, double overlap)
 void detect(State &state, const PairList &pairs, Sought sought)
 {
   filter_pairs(state, pairs);
-  sort_pairs(state, pairs);
+  if (const auto narrow = sort_pairs(state, pairs)) refuse_narrow_box(state, *narrow);
   state.unforeseen = 0;
   if (sought == Sought::foreseen) watch_unforeseen(state);
   for (int wall = 0; wall < int(state.settings.walls.size()); ++wall) sort_wall(state, wall);
@@ -303,7 +327,8 @@ std::size_t promote_near(State &state)
       if (std::min(displaced, gap_constrained(state, near)) < -left_of_contact(state, near.pair)) {
         resize_closely(state.contacts, state.contacts.size() + 1);
         resize_closely(state.infos, state.infos.size() + 1);
-        place_contact(state, state.contacts.size() - 1, near.pair);
+        const std::size_t last = state.contacts.size() - 1;
+        if (!place_contact(state, last, near.pair)) refuse_overlap(state, last);
         continue;
       }
       note_overlap(state, near.pair, -gap_at(state, near.pair, in_arrays));

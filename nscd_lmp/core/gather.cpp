@@ -54,7 +54,7 @@ NSCD_INLINE void load_body(State &s, int i, const Search &search, Largest &large
   // One test for all that is wrong: a not-a-number fails every comparison.
   const bool fit = dot(centre, centre) + before2 + free2 < INFINITY && g.radius[i] > 0 && g.radius[i] < INFINITY &&
       inverse_mass >= 0 && inverse_mass < INFINITY && (inverse_mass > 0) == moves;
-  if (!fit) refuse(s, i);
+  if (!fit && largest.unfit < 0) largest.unfit = i;
 }
 
 // Images take their grain's velocity, so ghosts need none of their own.
@@ -101,14 +101,21 @@ bool has_unread_torque(const Grains &g)
   return false;
 }
 
-NSCD_HOT Largest gather_owned(State &s, double prediction, double look_ahead)
+static NSCD_HOT Largest load_bodies(State &s, const Search &search)
+{
+  Largest largest;
+  for (int i = 0; i < s.grains.owned; ++i) load_body(s, i, search, largest);
+  return largest;
+}
+
+Largest gather_owned(State &s, double prediction, double look_ahead)
 {
   s.spheres.resize(s.grains.owned + s.grains.ghosts);
   s.bodies.resize(s.moving() + obstacle_copies * s.slabs.count());
   s.kicks.resize(s.bodies.size());
   s.displacement.resize(s.moving());
-  Largest largest;
-  for (int i = 0; i < s.grains.owned; ++i) load_body(s, i, {prediction, look_ahead}, largest);
+  const Largest largest = load_bodies(s, {prediction, look_ahead});
+  if (largest.unfit >= 0) refuse(s, largest.unfit);
   std::fill(s.bodies.begin() + s.grains.owned, s.bodies.end(), Body{});
   std::fill(s.kicks.begin() + s.grains.owned, s.kicks.end(), 0.0);
   if (s.friction.model != Model::frictionless) gather_spins(s);

@@ -11,6 +11,7 @@ namespace nscd {
 struct Largest {
   double kick2 = 0, speed2 = 0;
   double smallest_radius = INFINITY;
+  int unfit = -1;   // the first atom whose values are none to work with
 };
 
 // Sets the velocities of atoms that are held to 0.

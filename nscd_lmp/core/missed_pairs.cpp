@@ -113,7 +113,8 @@ void MissedPairs::examine(const State &s, int a, int b, double margin)
 }
 
 // Each pair is looked at from the larger one, so that a few large or fast grains do not make all others look far.
-NSCD_HOT void MissedPairs::search(const State &s, double margin)
+// Returns the atom at which that became too much, or -1.
+NSCD_HOT int MissedPairs::look_at_pairs(const State &s, double margin)
 {
   constexpr double cell_sizes = 4, most_for_each = 5000, most_at_least = 1e7;
   const std::size_t n = s.spheres.size();
@@ -125,7 +126,7 @@ NSCD_HOT void MissedPairs::search(const State &s, double margin)
     sum += size;
   }
   missed_.clear();
-  if (n == 0) return;
+  if (n == 0) return -1;
   grid_.fill(sized_, cell_sizes * sum / double(n));
   std::size_t looked_at = 0;
   for (int a = 0; a < int(n); ++a) {
@@ -137,10 +138,17 @@ NSCD_HOT void MissedPairs::search(const State &s, double margin)
       const double distance2 = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
       if (distance2 <= reach[3] * reach[3]) examine(s, a, b, margin);
     });
-    if (double(looked_at) > most_at_least + most_for_each * double(n))
-      fail("grain ", s.grains.tag[a], " moves by ", here[3] - s.spheres[a].radius, " in the step, many times the ",
-           "distance of its neighbors, and so do others: take a smaller timestep");
+    if (double(looked_at) > most_at_least + most_for_each * double(n)) return a;
   }
+  return -1;
+}
+
+void MissedPairs::search(const State &s, double margin)
+{
+  const int a = look_at_pairs(s, margin);
+  if (a >= 0)
+    fail("grain ", s.grains.tag[a], " moves by ", sized_[a][3] - s.spheres[a].radius, " in the step, many times the ",
+         "distance of its neighbors, and so do others: take a smaller timestep");
 }
 
 // Where slower grains were that the atom can meet, from where it was when the list was built.

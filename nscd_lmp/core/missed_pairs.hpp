@@ -64,6 +64,7 @@ class MissedPairs {
   bool has_profile() const { return range_.images.boxed; }
   void examine(const State &state, int a, int b, double margin);
   void search(const State &state, double margin);
+  int look_at_pairs(const State &state, double margin);
   Bounds partners(const State &state, int atom, double margin) const;
   bool all_known(int atom, const Bounds &partners) const;
   std::optional<Beyond> farthest_beyond(const State &state, double margin) const;

@@ -7,15 +7,25 @@
 
 namespace nscd {
 
-NSCD_HOT void gather_spins(State &s)
+// Returns the first grain whose spin is none, or -1.
+static NSCD_HOT int load_spins(State &s)
+{
+  auto &spins = s.friction.spins;
+  int unfit = -1;
+  for (int i = 0; i < s.grains.owned; ++i) {
+    spins[i] = start_spin(s, i) + smooth_spin_kick(s, i);
+    if (!(dot(spins[i], spins[i]) < INFINITY) && unfit < 0) unfit = i;
+  }
+  return unfit;
+}
+
+void gather_spins(State &s)
 {
   auto &spins = s.friction.spins;
   spins.resize(s.bodies.size());
-  for (int i = 0; i < s.grains.owned; ++i) {
-    spins[i] = start_spin(s, i) + smooth_spin_kick(s, i);
-    if (!(dot(spins[i], spins[i]) < INFINITY))
-      fail("grain ", s.grains.tag[i], " has an angular velocity or torque that is not a finite number");
-  }
+  const int unfit = load_spins(s);
+  if (unfit >= 0)
+    fail("grain ", s.grains.tag[unfit], " has an angular velocity or torque that is not a finite number");
   std::fill(spins.begin() + s.grains.owned, spins.end(), Vec4{});
 }
 

@@ -307,7 +307,9 @@ void FixNscd::final_integrate()
   const double time = update->atime + double(update->ntimestep - update->atimestep) * update->dt;
   nscd_progress.add(step_->report(), update->ntimestep, time);
   ++steps_;
-  next_reneighbor = step_->wants_rebuild() ? update->ntimestep + 1 : -1;
+  const bool wants_rebuild =
+      or_stop(error, id, [&] { return in_step(update->ntimestep, [&] { return step_->wants_rebuild(); }); });
+  next_reneighbor = wants_rebuild ? update->ntimestep + 1 : -1;
   if (local_rows_wanted()) fill_local();
 }
 
