@@ -9,6 +9,8 @@ namespace nscd {
 
 // Where no deeper overlap is allowed, a step may still add this share of what is: sweeps end, but never quite.
 constexpr double least_share = 0.01;
+// Of the bound, at which a step aims: so that what contacts that are there may still add keeps within it.
+constexpr double aim = 1 / (1 + 2 * least_share);
 
 NSCD_HOT void bound_approach(State &s, std::size_t first)
 {
@@ -16,9 +18,9 @@ NSCD_HOT void bound_approach(State &s, std::size_t first)
   resize_closely(s.per_approach, s.contacts.size());
   for (std::size_t k = first; k < s.contacts.size(); ++k) {
     const ContactInfo &info = s.infos[k];
-    const double deepest = *s.settings.overlap * info.radius;
+    const double deepest = aim * *s.settings.overlap * info.radius;
     const double deeper = std::max(deepest + info.gap, least_share * deepest);
-    s.per_approach[k] = 1 / (deeper / s.dt - (s.contacts[k].bias - normal_drift(s, k)));
+    s.per_approach[k] = 1 / ((deeper + plane_gap(s, k) - info.gap) / s.dt - (s.contacts[k].bias - normal_drift(s, k)));
   }
 }
 

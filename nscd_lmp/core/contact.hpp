@@ -54,6 +54,7 @@ struct ContactInfo {
   double radius = 0;        // of the smaller grain, m
   double kick = 0;          // what the smooth forces change of its grains' velocities, the larger of the two, m/s
   double free2 = 0;         // square of its velocity without impulses, biases and slip included, (m/s)^2
+  double curve = 0;         // m, <= 0: by how much the plane of the contact is nearer than the gap (moment.hpp)
 };
 
 // What the velocities of a contact are worth, m/s: what forces give its grains in a step or, where none act, a small

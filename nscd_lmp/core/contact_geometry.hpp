@@ -4,6 +4,7 @@
 #include "drift_of.hpp"
 #include "error.hpp"
 #include "hot.hpp"
+#include "moment.hpp"
 #include "state.hpp"
 
 #include <algorithm>
@@ -57,7 +58,7 @@ NSCD_INLINE bool place_contact(State &s, std::size_t k, const Candidate &c)
   const int i = s.owner[c.atom_i];
   int j;
   Vec4 normal, before = start_velocity(s, i);
-  double gap, smaller = a.radius;
+  double gap, smaller = a.radius, curve = 0;
   if (is_wall(c)) {
     const Height height(s.settings.walls[wall_index(c)]);
     normal = height.normal;
@@ -67,17 +68,26 @@ NSCD_INLINE bool place_contact(State &s, std::size_t k, const Candidate &c)
     const Sphere &b = s.spheres[c.atom_j];
     const Vec4 separation = a.centre - b.centre;
     const double distance = std::sqrt(dot(separation, separation));
+    const double radii = a.radius + b.radius;
     normal = separation / distance;
-    gap = distance - a.radius - b.radius;
+    gap = distance - radii;
     smaller = std::min(smaller, b.radius);
     j = s.owner[c.atom_j];
     before -= start_velocity(s, j);
+    if (s.lasting_moment > 0) {
+      const Vec4 parting = before + carried_apart(s, c);
+      if (passes(separation, distance, radii, parting * s.dt)) {
+        const Turned ahead = turned(separation, distance, parting * s.lasting_moment);
+        normal = ahead.normal;
+        curve = ahead.curve;
+      }
+    }
   }
   const double w = s.bodies[i][3] + s.bodies[j][3];
   s.contacts[k] = {normal, 0.0, 1 / w, 0.0, i, j};
   if (!s.drift.of.empty()) before += drift_of(s, c, normal);
   s.infos[k] = {gap, dot(normal, before), contact_key(s, c), c.atom_i, c.atom_j,
-                smaller, std::max(s.kicks[i], s.kicks[j]), 0.0};
+                smaller, std::max(s.kicks[i], s.kicks[j]), 0.0, curve};
   return !(gap < -smaller);
 }
 

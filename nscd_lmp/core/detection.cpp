@@ -270,6 +270,8 @@ double left_of_contact(const State &s, const Candidate &c)
   return left_of_overlap(s, kick, smaller_radius(s, c));
 }
 
+Vec4 way_start(const State &s, int body) { return s.courses.start.empty() ? Vec4{} : s.courses.start[body]; }
+
 // gap + dt v_n^{k+1}, which a contact keeps from being negative.
 double gap_constrained(const State &s, const Watched &near)
 {
@@ -277,12 +279,13 @@ double gap_constrained(const State &s, const Watched &near)
   const Body of_i = s.bodies[s.owner[i]];
   if (is_wall(near.pair)) {
     const Vec4 normal = Height(s.settings.walls[wall_index(near.pair)]).normal;
-    return near.gap + s.dt * dot(normal, of_i + drift_of(s, near.pair, normal));
+    return near.gap + dot(normal, way_start(s, s.owner[i]) + s.dt * (of_i + drift_of(s, near.pair, normal)));
   }
   const Vec4 separation = s.spheres[i].centre - s.spheres[j].centre;
   const double distance = std::sqrt(dot(separation, separation));
   const Vec4 parting = of_i - s.bodies[s.owner[j]] + drift_of(s, near.pair, separation / distance);
-  return near.gap + s.dt * dot(separation, parting) / distance;
+  const Vec4 starts = way_start(s, s.owner[i]) - way_start(s, s.owner[j]);
+  return near.gap + dot(separation, starts + s.dt * parting) / distance;
 }
 
 NSCD_INLINE void note_overlap(State &s, const Candidate &c, double overlap)

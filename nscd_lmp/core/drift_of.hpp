@@ -17,6 +17,13 @@ NSCD_INLINE Vec4 drift_of(const State &s, const Candidate &c, const Vec4 &normal
   return without_fourth(i - j) - normal * (i[3] + j[3]);
 }
 
+// That of two centres, without radii.
+NSCD_INLINE Vec4 carried_apart(const State &s, const Candidate &c)
+{
+  if (s.drift.of.empty()) return Vec4{};
+  return without_fourth(s.drift.of[c.atom_i] - (c.atom_j < 0 ? Vec4{} : s.drift.of[c.atom_j]));
+}
+
 NSCD_INLINE Vec4 drift_of(const State &s, std::size_t k)
 {
   return drift_of(s, {s.infos[k].atom_i, s.infos[k].atom_j}, s.contacts[k].normal);
@@ -34,6 +41,21 @@ NSCD_INLINE typename M::Tangent tangential_drift(const State &s, std::size_t k)
 {
   return s.drift.of.empty() ? typename M::Tangent{} : M::from_space(s.contacts[k].normal, drift_of(s, k));
 }
+
+// By which impacts put the start of the contact's way apart, along its normal, m.
+NSCD_INLINE double put_apart(const State &s, const Contact &c)
+{
+  return s.courses.start.empty() ? 0 : dot(c.normal, s.courses.start[c.i] - s.courses.start[c.j]);
+}
+
+// How far the contact's plane is where its way starts, m.
+NSCD_INLINE double plane_gap(const State &s, std::size_t k)
+{
+  return s.infos[k].gap + s.infos[k].curve + put_apart(s, s.contacts[k]);
+}
+
+// By which an impact of contact k meets faster along its normal than its bodies' mean velocities say, m/s.
+NSCD_INLINE double impact_kick(const State &s, std::size_t k) { return s.courses.kick.empty() ? 0 : s.courses.kick[k]; }
 
 // At which a contact may give back what radii and box have done suddenly, m/s.
 NSCD_INLINE double sudden_approach(const State &s, std::size_t k)

@@ -99,7 +99,7 @@ void EnergyLimit::find_work(const State &s, std::size_t count, const Motion *bef
     const Contact &c = s.contacts[k];
     const double first = before ? normal_velocity(c, before->bodies.data()) + normal_drift(s, k)
                                 : s.infos[k].speed_before;
-    const double after = normal_velocity(c, s.bodies.data()) + normal_drift(s, k);
+    const double after = normal_velocity(c, s.bodies.data()) + normal_drift(s, k) + 2 * impact_kick(s, k);
     work[islands_.of(grain_of(c, s.bodies.data()))] += 0.5 * c.impulse * (first + after);
   }
   with_friction(s.friction.model, [&]<class M>(M) {
@@ -110,6 +110,7 @@ void EnergyLimit::find_work(const State &s, std::size_t count, const Motion *bef
       const Velocity first = before ? velocity<M>(c, before->bodies.data(), before->spins.data())
                                     : Velocity{s.infos[k].speed_before, slip_at_start<M>(s, k)};
       double twice = c.impulse * (first.n + after.n) + inner(s.friction.slides<M>()[k].impulse, first.t + after.t);
+      twice += 2 * c.impulse * impact_kick(s, k);
       if (!s.drift.of.empty()) {
         twice += (before ? 2 : 1) * c.impulse * normal_drift(s, k);   // speed_before has it
         twice += 2 * inner(s.friction.slides<M>()[k].impulse, tangential_drift<M>(s, k));
@@ -120,12 +121,12 @@ void EnergyLimit::find_work(const State &s, std::size_t count, const Motion *bef
   if (s.halo) work[0] = s.halo->sum(work[0]);
 }
 
-// Contacts that overlap are pushed apart at the speed in their biases.
+// Contacts that overlap, or whose plane is nearer than their gap, are pushed apart at the speed in their biases.
 void EnergyLimit::allow_recovery(const State &s, std::size_t count)
 {
   for (std::size_t k = 0; k < count; ++k) {
     const Contact &c = s.contacts[k];
-    const double apart = s.infos[k].gap < 0 ? std::max(0.0, normal_drift(s, k) - c.bias) : 0;
+    const double apart = std::max(0.0, normal_drift(s, k) - c.bias);
     limit_[islands_.of(grain_of(c, s.bodies.data()))] += apart * c.impulse;
   }
 }

@@ -18,6 +18,8 @@ class Law {
   virtual ~Law() = default;
   // Contacts are sought at q_k + prediction dt v_k.
   virtual double prediction(const Settings &) const { return 0; }
+  // Lasting contacts act `moment` dt after that, along the normal that their pair has then.
+  virtual double moment() const { return 0; }
   // Whether contacts are sought ahead, within dt times the speeds, or only where spheres touch.
   virtual bool looks_ahead() const { return false; }
   // Whether impacts are resolved ahead of the contacts, from the free velocities of the bodies.

@@ -50,6 +50,14 @@ struct Friction {
   }
 };
 
+// How impacts under restitution bend the courses of grains: each acts when its pair meets. Empty where there are none.
+struct Courses {
+  AlignedVector<Vec4> start{};   // (bodies) m from q_k, where the straight way behind the last impact comes from
+  AlignedVector<Vec4> shift{};   // (bodies) m, by which impacts displace more than if they acted half-way
+  std::vector<double> kick{};    // (contacts of a round) m/s: n.u when they meet, less n.u by the bodies' mean velocities
+  double work = 0;               // of smooth forces on the shift, J in the units of m v^2
+};
+
 // Walls are bodies of infinite mass. Several copies, used in turn: consecutive wall contacts then do not wait
 // for each other's store to the same body.
 constexpr int obstacle_copies = 16;
@@ -86,6 +94,7 @@ struct State {
   std::vector<ContactInfo> infos{};      // beside contacts
   std::vector<double> per_approach{};    // beside contacts, 1 / the approach that a step may leave, s/m; or empty: any
   std::vector<double> impact_impulse{};  // beside contacts, N s, of impacts resolved ahead of them; or empty
+  Courses courses{};                     // of grains with impacts
 
   Friction friction{};
   Drift drift{};
@@ -99,6 +108,7 @@ struct State {
   std::vector<Candidate> ordered{};      // scratch
 
   Overlap watched_overlap{};           // of near, at the end of the step
+  double lasting_moment = 0;           // s after the start of the step, when lasting contacts act; 0: contacts are sought then
   double watch = 0;                    // surface distance within which pairs are watched, m
   double smooth_kick = 0;              // largest |dt f / m| of the step, m/s
   double round_off = 0;                // of velocities, m/s

@@ -60,6 +60,7 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
   const auto start = Clock::now();
   if (!(dt > 0 && std::isfinite(dt))) fail("the timestep is ", dt, ": it must be > 0");
   state_.dt = dt;
+  state_.lasting_moment = law_->moment() * dt;
   state_.grains = grains;
   pairs_ = &pairs;
   prepare(pairs);

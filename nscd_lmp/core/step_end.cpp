@@ -23,7 +23,7 @@ void Step::finish()
 NSCD_HOT void Step::tally_contacts()
 {
   const State &s = state_;
-  double overlap = 0, ratio = 0, work = tangential_work(s);
+  double overlap = 0, ratio = 0, work = tangential_work(s) + 2 * s.courses.work;
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
     const Contact &c = s.contacts[k];
     ContactInfo &info = state_.infos[k];

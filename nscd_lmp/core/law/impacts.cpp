@@ -3,6 +3,7 @@
 #include "../contact_order.hpp"
 #include "../drift_of.hpp"
 #include "../slides.hpp"
+#include "bends.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -25,10 +26,11 @@ void smooth_half(State &s, double sign)
   if (s.friction.model != Model::frictionless) add_smooth_spins(s, 0.5 * sign);
 }
 
-// Biases of an impact: what is left of the velocity now, drift included, reversed.
-void bias_impact(State &s, std::size_t k, double u)
+// Biases of an impact: what is left of the velocity when they meet, drift included, reversed.
+void bias_impact(State &s, std::size_t k, double u, double kick)
 {
-  s.contacts[k].bias = s.settings.restitution * u + normal_drift(s, k);
+  const double e = s.settings.restitution;
+  s.contacts[k].bias = e * (u + kick) + kick + normal_drift(s, k);
   with_friction(s.friction.model, [&]<class M>(M) {
     const auto slip = velocity<M>(s.contacts[k], s.bodies.data(), s.friction.spins.data()).t;
     const auto drift = tangential_drift<M>(s, k);
@@ -45,17 +47,20 @@ struct Closing {
 
 // Brings the contacts of S_m to the front and gives them their bias. In place: copies of them would double the memory
 // of a contact.
-Closing select_closing(State &s)
+Closing select_closing(State &s, Bends &bends)
 {
   std::size_t closing = 0;
   double energy = 0;
-  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
-    const double u = normal_velocity(s.contacts[k], s.bodies.data()) + normal_drift(s, k);
-    const double slow = resting_kicks * s.infos[k].kick + tolerances * tolerance(s, worth(s.infos[k]));
-    if (u >= -slow || std::max(s.infos[k].gap, 0.0) + s.dt * u >= 0) continue;
-    swap_contacts(s, k, closing);
+  bends.look(s, [&](std::size_t k, double u) {
+    return u < -resting_kicks * s.infos[k].kick - tolerances * tolerance(s, worth(s.infos[k]));
+  });
+  s.courses.kick.clear();
+  for (const Bends::Meeting &met : bends.first_meetings(s)) {
+    swap_contacts(s, met.contact, closing);
+    const double u = normal_velocity(s.contacts[closing], s.bodies.data()) + normal_drift(s, closing);
     energy += 0.5 * s.contacts[closing].w_inverse * u * u;
-    bias_impact(s, closing++, u);
+    s.courses.kick.push_back(met.kick);
+    bias_impact(s, closing++, u, met.kick);
   }
   double sums[] = {double(closing), energy};
   if (s.halo) {
@@ -87,17 +92,25 @@ bool resolve_impacts(State &s, const SolvePart &solve)
   s.friction.impact_impulse.clear();
   s.per_approach.clear();   // of the last step's contacts, which are others
   smooth_half(s, -1);
-  Closing closing = select_closing(s);
+  Bends bends(s);
+  Closing closing = select_closing(s, bends);
   const double first_energy = closing.energy;
   const double contacts = sum_everywhere(s, double(s.contacts.size()));
   const double rounds = std::clamp(most_looks / std::max(contacts, 1.0), least_rounds, most_rounds);
   double visits = std::max(cheap_visits, most_visits * contacts);
-  for (int round = 0; round < rounds && closing.all > 0 && visits > 0; ++round) {
+  for (int round = 0; round < rounds && visits > 0; ++round) {
+    if (closing.all == 0) {
+      if (!bends.straighten(s)) break;
+      closing = select_closing(s, bends);
+      continue;
+    }
     visits -= closing.all;
     solve(closing.here);
+    bends.act(s, closing.here);
     keep_impulses(s, closing.here);
-    closing = select_closing(s);
+    closing = select_closing(s, bends);
   }
+  s.courses.kick.clear();
   smooth_half(s, +1);
   const double e = s.settings.restitution;
   return e * e * closing.energy > worth_saying * first_energy;

@@ -1,0 +1,185 @@
+#include "bends.hpp"
+
+#include "../across_ranks.hpp"
+#include "../drift_of.hpp"
+#include "../moment.hpp"
+#include "../slides.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nscd {
+
+namespace {
+
+constexpr double parts_of_step = 100;
+
+char parts(const State &s, double moment) { return char(parts_of_step * moment / s.dt); }
+
+bool is_grain(const State &s, int body) { return s.bodies[body][3] > 0; }
+
+// How a pair lies and moves behind the impacts so far.
+struct Pair {
+  Vec4 separation;   // m, where its way comes from
+  Vec4 parting;      // m/s
+};
+
+Vec4 separation_at_start(const State &s, const ContactInfo &info)
+{
+  return s.spheres[info.atom_i].centre - s.spheres[info.atom_j].centre;
+}
+
+Pair pair_now(const State &s, std::size_t k)
+{
+  const Contact &c = s.contacts[k];
+  const ContactInfo &info = s.infos[k];
+  return {separation_at_start(s, info) + s.courses.start[c.i] - s.courses.start[c.j],
+          without_fourth(s.bodies[c.i] - s.bodies[c.j]) + carried_apart(s, {info.atom_i, info.atom_j})};
+}
+
+// Contact k takes its plane where its pair is `there` apart.
+void turn(State &s, std::size_t k, const Vec4 &there)
+{
+  Contact &c = s.contacts[k];
+  ContactInfo &info = s.infos[k];
+  const Vec4 start = separation_at_start(s, info);
+  const Turned plane = turned(start, std::sqrt(dot(start, start)), there - start);
+  c.normal = plane.normal;
+  info.curve = std::min(0.0, plane.curve);
+  info.speed_before = dot(c.normal, start_velocity(s, c.i) - start_velocity(s, c.j)) + normal_drift(s, k);
+}
+
+// How far the plane of contact k is at the end of the step, m; an overlap that it had is none.
+double plane_at_end(const State &s, std::size_t k, double u)
+{
+  return plane_gap(s, k) - std::min(s.infos[k].gap, 0.0) + s.dt * u;
+}
+
+}    // namespace
+
+Bends::Bends(State &s)
+{
+  s.courses.shift.assign(s.bodies.size(), Vec4{});
+  s.courses.start.assign(s.bodies.size(), Vec4{});
+  s.courses.work = 0;
+  struck_.assign(s.bodies.size(), 0);
+  straight_.assign(s.bodies.size(), 0);
+}
+
+void Bends::find_starts(State &s) const
+{
+  for (int i = 0; i < s.moving(); ++i) {
+    if (!is_grain(s, i) || straight_[i]) {
+      s.courses.start[i] = Vec4{};
+      continue;
+    }
+    const Vec4 struck = s.bodies[i] - start_velocity(s, i) - 0.5 * smooth_kick(s, i);
+    s.courses.start[i] = s.courses.shift[i] - without_fourth(struck) * (0.5 * s.dt);
+  }
+}
+
+std::optional<double> Bends::meet(State &s, std::size_t k) const
+{
+  const Contact &c = s.contacts[k];
+  const ContactInfo &info = s.infos[k];
+  const double struck = s.dt / parts_of_step * std::max(struck_[c.i], struck_[c.j]);
+  std::optional<double> moment;
+  if (info.atom_j < 0) {
+    const double closing = -(normal_velocity(c, s.bodies.data()) + normal_drift(s, k));
+    if (closing > 0) moment = std::max((info.gap + put_apart(s, c)) / closing, struck);
+  } else {
+    const Pair pair = pair_now(s, k);
+    const double radii = s.spheres[info.atom_i].radius + s.spheres[info.atom_j].radius;
+    moment = meeting(pair.separation + pair.parting * struck, radii, pair.parting);
+    if (moment) *moment += struck;
+    turn(s, k, pair.separation + pair.parting * std::min(moment.value_or(s.dt), s.dt));
+  }
+  return moment && *moment <= s.dt ? moment : std::nullopt;
+}
+
+// The smooth forces change velocities evenly: at `moment` they differ by this from those in the middle, along n.
+double Bends::kick_until(const State &s, std::size_t k, double moment) const
+{
+  const Contact &c = s.contacts[k];
+  const auto kick = [&](int body) { return is_grain(s, body) && !straight_[body] ? smooth_kick(s, body) : Vec4{}; };
+  return dot(c.normal, kick(c.i) - kick(c.j)) * (moment / s.dt - 0.5);
+}
+
+void Bends::look(State &s, const IsImpact &is_impact)
+{
+  find_starts(s);
+  meetings_.clear();
+  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
+    const double before = normal_velocity(s.contacts[k], s.bodies.data()) + normal_drift(s, k);
+    if (plane_at_end(s, k, before) >= 0) continue;
+    const auto moment = meet(s, k);
+    if (!moment) continue;
+    const double u = normal_velocity(s.contacts[k], s.bodies.data()) + normal_drift(s, k);
+    const double kick = kick_until(s, k, *moment);
+    if (is_impact(k, u + kick)) meetings_.push_back({k, *moment, kick});
+  }
+}
+
+const std::vector<Bends::Meeting> &Bends::first_meetings(State &s)
+{
+  sooner_.assign(s.bodies.size(), 0);
+  const auto left = [&s](const Meeting &met) { return char(parts_of_step - parts(s, met.moment)); };
+  const auto each = [&](const Meeting &met, auto act) {
+    for (const int body : {s.contacts[met.contact].i, s.contacts[met.contact].j})
+      if (is_grain(s, body)) act(body);
+  };
+  for (const Meeting &met : meetings_) each(met, [&](int b) { sooner_[b] = std::max(sooner_[b], left(met)); });
+  if (s.halo) s.halo->spread(sooner_);
+  std::erase_if(meetings_, [&](const Meeting &met) {
+    bool later = false;
+    each(met, [&](int b) { later |= left(met) < sooner_[b]; });
+    return later;
+  });
+  return meetings_;
+}
+
+void Bends::act(State &s, std::size_t count)
+{
+  change_across(s.halo, s.courses.shift, nullptr, [&] {
+    for (std::size_t k = 0; k < count; ++k) {
+      const Contact &c = s.contacts[k];
+      const double moment = meetings_[k].moment;
+      const Vec4 way = (c.normal * c.impulse + tangential_impulse(s, k)) * (0.5 * s.dt - moment);
+      s.courses.work += c.impulse * s.courses.kick[k];
+      for (const int body : {c.i, c.j}) {
+        if (!straight_[body]) s.courses.shift[body] += way * (body == c.i ? s.bodies[body][3] : -s.bodies[body][3]);
+        if (c.impulse > 0 && is_grain(s, body)) struck_[body] = std::max(struck_[body], parts(s, moment));
+      }
+    }
+  });
+  if (s.halo) s.halo->spread(struck_);
+}
+
+// Contacts that are to be pushed apart although they part, by more than a solved step leaves.
+void Bends::find_contradictions(State &s)
+{
+  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
+    const Contact &c = s.contacts[k];
+    const auto is_kept = [&] {
+      const double parts = std::max(0.0, normal_velocity(c, s.bodies.data()) + normal_drift(s, k));
+      return plane_at_end(s, k, parts) >= -left_of_overlap(s, worth(s.infos[k]), s.infos[k].radius);
+    };
+    if (put_apart(s, c) == 0 || is_kept()) continue;
+    meet(s, k);
+    if (is_kept()) continue;
+    for (const int body : {c.i, c.j}) straight_[body] = is_grain(s, body);
+  }
+}
+
+bool Bends::straighten(State &s)
+{
+  const Parts before = straight_;
+  find_contradictions(s);
+  if (s.halo) s.halo->spread(straight_);
+  for (std::size_t b = 0; b < straight_.size(); ++b)
+    if (straight_[b]) s.courses.shift[b] = Vec4{};
+  find_starts(s);
+  return sum_everywhere(s, double(straight_ != before)) > 0;
+}
+
+}    // namespace nscd

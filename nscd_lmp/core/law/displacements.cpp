@@ -1,0 +1,130 @@
+#include "displacements.hpp"
+
+#include "../across_ranks.hpp"
+#include "../drift_of.hpp"
+#include "../hot.hpp"
+#include "../slides.hpp"
+
+#include <algorithm>
+
+namespace nscd {
+
+// Rate at which the contact's gap changes as its bodies move now, m/s.
+NSCD_INLINE double Displacements::rate(const State &s, std::size_t k) const
+{
+  const Contact &c = s.contacts[k];
+  return dot(c.normal, mean_[c.i] - mean_[c.j]) + normal_drift(s, k);
+}
+
+// Whether the contact is left with no more overlap than the solver's tolerance leaves anyway.
+NSCD_INLINE bool Displacements::is_open(const State &s, std::size_t k, double rate) const
+{
+  const ContactInfo &info = s.infos[k];
+  return !(info.gap + info.curve + s.dt * rate < -left_of_overlap(s, worth(info), info.radius));
+}
+
+// All but impacts acts from the start of the step on.
+static Vec4 final_velocity(const State &s, int body)
+{
+  return s.courses.start.empty() ? s.bodies[body] : s.bodies[body] + s.courses.start[body] / s.dt;
+}
+
+void Displacements::start_half_way(const State &s)
+{
+  const std::size_t bodies = s.bodies.size();
+  mean_.resize(bodies);
+  final_.assign(bodies, 0);
+  for (std::size_t i = 0; i < bodies; ++i) {
+    const Body &b = s.bodies[i];
+    if (b[3] > 0) {
+      mean_[i] = 0.5 * (start_velocity(s, int(i)) + Vec4{0, 0, 0, b[3]} + b);
+    } else {
+      mean_[i] = b;
+      final_[i] = 1;
+    }
+  }
+}
+
+void Displacements::add_shift(const State &s)
+{
+  for (std::size_t i = 0; i < s.courses.shift.size(); ++i)
+    if (!final_[i]) mean_[i] += s.courses.shift[i] / s.dt;
+}
+
+// Collected without branches, which would be mispredicted.
+NSCD_HOT void Displacements::find_suspects(const State &s)
+{
+  const std::size_t n = s.contacts.size();
+  resize_closely(suspects_, n);
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    fetch_bodies(s.contacts[std::min(k + fetch_ahead, n - 1)], mean_.data());
+    suspects_[count] = std::uint32_t(k);
+    count += !is_open(s, k, rate(s, k));
+  }
+  suspects_.resize(count);
+}
+
+// What an impulse displaces acts half-way: as much again makes it act from the start.
+void Displacements::act_at_start(const State &s)
+{
+  for (const std::uint32_t k : suspects_) {
+    const Contact &c = s.contacts[k];
+    if (!(c.impulse > 0)) continue;
+    const Vec4 half = 0.5 * (c.normal * c.impulse + tangential_impulse(s, k));
+    if (!final_[c.i]) mean_[c.i] += half * s.bodies[c.i][3];
+    if (!final_[c.j]) mean_[c.j] -= half * s.bodies[c.j][3];
+  }
+}
+
+// If the contact is driven into overlap, both grains are made to move with v_{k+1}, unless that is worse still.
+// Returns whether that changed a grain.
+bool Displacements::open_contact(const State &s, std::uint32_t k)
+{
+  const Contact &c = s.contacts[k];
+  if (final_[c.i] && final_[c.j]) return false;
+  const double now = rate(s, k);
+  const double solved = normal_velocity(c, s.bodies.data()) + put_apart(s, c) / s.dt + normal_drift(s, k);
+  if (is_open(s, k, now) || now >= solved) return false;
+  for (const int b : {c.i, c.j}) {
+    mean_[b] = final_velocity(s, b);
+    final_[b] = 1;
+  }
+  return true;
+}
+
+// Opens contacts until none is driven into overlap. After the first pass only contacts between a grain that has
+// changed and one that has not can fail.
+void Displacements::open_contacts(const State &s)
+{
+  find_suspects(s);
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const std::uint32_t k : suspects_) changed |= open_contact(s, k);
+    suspects_.clear();
+    for (std::size_t k = 0; k < s.contacts.size() && changed; ++k)
+      if (final_[s.contacts[k].i] != final_[s.contacts[k].j]) suspects_.push_back(std::uint32_t(k));
+  }
+}
+
+void Displacements::fill(State &s)
+{
+  start_half_way(s);
+  add_shift(s);
+  find_suspects(s);
+  if (sum_everywhere(s, double(suspects_.size())) > 0) {
+    change_across(s.halo, mean_, nullptr, [&] { act_at_start(s); });
+    open_contacts(s);
+    while (s.halo && s.halo->spread(final_)) {
+      for (int i = 0; i < s.moving(); ++i)
+        if (final_[i]) mean_[i] = final_velocity(s, i);
+      open_contacts(s);
+    }
+  }
+  for (int i = 0; i < s.moving(); ++i) {
+    const Vec4 &w = mean_[i];
+    s.displacement[i] = Vec4{w[0], w[1], w[2], 0} * (way(s, i) == Way::stands ? 0.0 : s.dt);
+  }
+}
+
+}    // namespace nscd

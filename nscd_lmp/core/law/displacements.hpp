@@ -1,0 +1,39 @@
+// How grains move under law gap, once their velocities are known.
+//
+// dt v_{k+1} is what the gap constraint is about, but it is only first order in free flight and loses energy in
+// impacts. So every grain takes the midpoint displacement dt (v_k + v_{k+1}) / 2: an impulse then acts half-way through
+// the step, where the normals of lasting contacts are taken (moment.hpp). Impacts with restitution act when they meet.
+// Where that would drive a contact into overlap
+//   1. its own impulse acts from the start of the step on: contacts that grains run into without restitution,
+//   2. both grains take dt v_{k+1}, until all contacts are open. It ends: grains only change in that direction, and if
+//      all have changed the solver's own constraint holds.
+#pragma once
+
+#include "../state.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace nscd {
+
+class Displacements {
+ public:
+  // Fills state.displacement from the velocities in state.bodies. Collective.
+  void fill(State &state);
+
+ private:
+  NSCD_INLINE double rate(const State &s, std::size_t k) const;
+  NSCD_INLINE bool is_open(const State &s, std::size_t k, double rate) const;
+  void start_half_way(const State &s);
+  void add_shift(const State &s);
+  void find_suspects(const State &s);
+  void act_at_start(const State &s);
+  bool open_contact(const State &s, std::uint32_t k);
+  void open_contacts(const State &s);
+
+  AlignedVector<Vec4> mean_;      // per body: mean velocity of its way
+  std::vector<char> final_;       // per body: moves with v_{k+1}
+  std::vector<std::uint32_t> suspects_;   // contacts that may be driven into overlap
+};
+
+}    // namespace nscd
