@@ -55,7 +55,7 @@ SolverReport accelerate(Problem &problem, const SolverOptions &options, Sweep sw
   const auto look = [&](const Goal &goal) {
     Criterion seen = measure_across(problem, goal);
     if constexpr (std::remove_reference_t<Best>::keeps)
-      if (is_met_by_sums(seen, goal) && seen.approach > 1 && (options.budget == 0 || goal.worst == off_of_accepted)) {
+      if (is_met_by_sums(seen, goal) && seen.approach > 1 && (options.budget.sweeps == 0 || goal.worst == off_of_accepted)) {
         extra += part_normals(problem);
         pace.momentum.restart();
         seen = measure_across(problem, goal);
