@@ -113,9 +113,10 @@ def attach(
         smaller radius.
         None: 5e-4 with the criterion ``"natural"`` (1e-3 loose, 1e-4 tight), no such condition with ``"paper"``.
     budget : int, optional
-        Sweeps after which a step is accepted that is above `tol`, but below 30 `tol` and within `overlap`; the column
-        ``accepted_steps`` counts them. 0: never. None: 30 with friction and the criterion ``"natural"`` (10 loose,
-        300 tight), and more where there are less than 2000 contacts, 2000 visits of contacts for each; 0 otherwise.
+        Sweeps after which, or at `maxiter` if that is less, a step is accepted that is above `tol`, but below 30 `tol`
+        and within `overlap`; the column ``accepted_steps`` counts them. 0: never. None: 30 with friction and the
+        criterion ``"natural"`` (10 loose, 300 tight), and more where there are less than 2000 contacts, 2000 visits of
+        contacts for each; 0 otherwise.
     maxiter : int
         Iterations after which a step is given up; see `unconverged`.
     warmstart : bool, optional

@@ -111,6 +111,28 @@ def test_steps_are_accepted_at_their_budget_and_counted() -> None:
     assert accepted[10] > accepted[1000]
 
 
+@pytest.mark.parametrize("solver", ["apgs", "pdas"])
+def test_what_is_good_enough_at_maxiter_is_accepted(solver: str) -> None:
+    # the budget of so few contacts is more than maxiter
+    lmp, bed = falling(60, friction=0.8, accuracy="tight", solver=solver)
+    lmp.commands_list(["timestep 5e-4", "run 150"])
+    stats = bed.stats
+    assert stats["unconverged_steps"][-1] == 0
+    assert stats["accepted_steps"][-1] > 0
+    assert stats["relative_residual"].max() <= 30e-4
+    assert stats["largest_overlap_ratio"].max() <= 1.02e-4  # overlaps round
+    lmp.close()
+
+
+@pytest.mark.parametrize("solver", ["pdas", "sal"])
+def test_local_laws_end_within_the_bound_on_overlaps(solver: str) -> None:
+    lmp, bed = falling(friction=0.5, solver=solver)
+    lmp.commands_list(["timestep 5e-4", "run 150"])
+    assert bed.stats["unconverged_steps"][-1] == 0
+    assert bed.stats["largest_overlap_ratio"].max() <= 1.02 * 5e-4  # overlaps round
+    lmp.close()
+
+
 def test_accepted_steps_make_no_energy() -> None:
     lmp, bed = falling(friction=0.8, budget=1)
     energies = []

@@ -28,7 +28,7 @@ struct SolverReport {
 // Sweeps with friction end where more of them change nothing that can be seen (docs/friction_accuracy.md).
 constexpr double accepted_tolerances = 30, most_accepted = 0.1;
 
-// When an answer may be accepted: after so many sweeps, or visits of contacts, since sweeps of few contacts cost nothing.
+// When an answer may be accepted: after so many sweeps and visits of contacts, since sweeps of few cost nothing.
 struct Budget {
   int sweeps = 0;   // 0: never
   double visits = 0;

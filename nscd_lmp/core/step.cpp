@@ -204,7 +204,10 @@ bool Step::solve_part(const Part &part, int maxiter)
   options.maxiter = maxiter;
   options.budget.spent = report_.iterations - started_at_;
   SolverReport solved = solve_problem(problem, options);
-  if (!solved.converged) look_closer(problem, solved.criterion);
+  if (!solved.converged && maxiter == options_.maxiter) {   // it is told how far off; what is swept briefly goes on
+    problem.goal.worst = INFINITY;
+    look_closer(problem, solved.criterion);
+  }
   report_.seconds_solver += seconds(start, Clock::now());
   if (!std::isfinite(solved.criterion.total()))
     fail("solver ", settings_.solver,
