@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace nscd {
 
@@ -161,10 +162,20 @@ void Step::solve_within_energy(const Part &part, EnergyLimit::From from)
 {
   share_among_threads(part.contacts);
   const bool newton = state_.friction.model != Model::frictionless && part.e != part.e_t;
+  const bool before = std::exchange(report_.accepted, false);   // of impacts
   const auto solve = [&] { return solve_part(part, options_.maxiter); };
+  const auto go_on = [&] {
+    if (!std::exchange(report_.accepted, false)) return false;
+    const Budget budget = std::exchange(options_.budget, {});
+    const bool solved = solve();
+    options_.budget = budget;
+    return solved;
+  };
   const bool gives_back = law_->looks_ahead() && from == EnergyLimit::From::step;
   if (custom_) solve();
-  else energy_limited_ |= energy_limit_.solve(state_, part.contacts, newton, from, gives_back, solve);
+  else energy_limited_ |= energy_limit_.solve(state_, part.contacts, newton, from, gives_back, solve,
+                                                std::ref(go_on));   // as a copy it would be allocated
+  report_.accepted |= before;
 }
 
 SolverReport Step::solve_problem(Problem &problem, const SolverOptions &options)
