@@ -136,7 +136,7 @@ def attach(
         Moment of inertia of a grain, ``"sphere"`` (2/5 m r^2) or ``"disc"`` (1/2 m r^2, in dimension 2). None: disc
         in dimension 2, sphere otherwise.
     unconverged : str
-        What to do about steps that did not reach `tol`: ``"ignore"``, ``"warn"`` at the end of a run, or
+        What to do about steps that were given up: ``"ignore"``, ``"warn"`` at the end of a run, or
         ``"error"``.
     threads : int
         Threads that share the contacts of a rank, 1 to 64; see docs/ranks.md.
