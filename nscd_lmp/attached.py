@@ -34,8 +34,7 @@ class Attached:
         parts ``motion``, ``bipotential``, ``penetration`` in m/s, ``relative_residual``, ``largest_overlap`` in m,
         ``dissipated_energy`` in J since the run began, ``largest_overlap_ratio`` over the smaller radius,
         ``unconverged_steps`` and ``energy_limited_steps`` since the run began, ``worst_residual`` of a contact over
-        what it has at stake), ``seconds_contacts`` and
-        ``seconds_solver``.
+        what it has at stake, ``accepted_steps`` since the run began), ``seconds_contacts`` and ``seconds_solver``.
 
         It is read-only, and keeps its rows when more steps are taken. Reading it costs what the steps since the last
         reading cost, not all of them.

@@ -113,9 +113,10 @@ def attach(
         smaller radius.
         None: 5e-4 with the criterion ``"natural"`` (1e-3 loose, 1e-4 tight), no such condition with ``"paper"``.
     budget : int, optional
-        Sweeps after which a step is accepted that is above `tol`, but below 30 `tol` and within `overlap`; the column
-        ``accepted_steps`` counts them. 0: never. None: 30 with friction and the criterion ``"natural"`` (10 loose,
-        300 tight), and more where there are less than 2000 contacts, 2000 visits of contacts for each; 0 otherwise.
+        Sweeps after which, or at `maxiter` if that is less, a step is accepted that is above `tol`, but below 30 `tol`
+        and within `overlap`; the column ``accepted_steps`` counts them. 0: never. None: 30 with friction and the
+        criterion ``"natural"`` (10 loose, 300 tight), and more where there are less than 2000 contacts, 2000 visits of
+        contacts for each; 0 otherwise.
     maxiter : int
         Iterations after which a step is given up; see `unconverged`.
     warmstart : bool, optional
@@ -135,7 +136,7 @@ def attach(
         Moment of inertia of a grain, ``"sphere"`` (2/5 m r^2) or ``"disc"`` (1/2 m r^2, in dimension 2). None: disc
         in dimension 2, sphere otherwise.
     unconverged : str
-        What to do about steps that did not reach `tol`: ``"ignore"``, ``"warn"`` at the end of a run, or
+        What to do about steps that were given up: ``"ignore"``, ``"warn"`` at the end of a run, or
         ``"error"``.
     threads : int
         Threads that share the contacts of a rank, 1 to 64; see docs/ranks.md.

@@ -96,7 +96,7 @@ def solve(
     rho, gamma : float, optional
         The solver's parameter as a multiple of 1/W_nn; None for its own default.
     unconverged : str
-        What to do where `tol` is not reached: ``"warn"``, ``"ignore"`` or ``"error"``.
+        What to do where it is neither solved nor accepted: ``"warn"``, ``"ignore"`` or ``"error"``.
 
     Returns
     -------
@@ -106,12 +106,12 @@ def solve(
     ------
     NscdError
         For an unknown name, a parameter that the solver does not have, a value out of range, a start of another shape
-        or not finite; with ``unconverged="error"`` where `tol` is not reached.
+        or not finite; with ``unconverged="error"`` where it is neither solved nor accepted.
 
     Warns
     -----
     UserWarning
-        With ``unconverged="warn"`` where `tol` is not reached.
+        With ``unconverged="warn"`` where it is neither solved nor accepted.
     """
     if not isinstance(problem, ContactProblem):
         raise _core.NscdError(f"the problem is a {type(problem).__name__} and must be a ContactProblem")

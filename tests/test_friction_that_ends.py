@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenes import GRAVITY, box_walls, cloud, harden, per_atom, start, state
+from scenes import FLOOR, GRAVITY, box_walls, cloud, grains, harden, per_atom, start, state
 
 import nscd_lmp
 
@@ -109,6 +109,47 @@ def test_steps_are_accepted_at_their_budget_and_counted() -> None:
         lmp.close()
     assert accepted[0] == 0
     assert accepted[10] > accepted[1000]
+
+
+@pytest.mark.parametrize("solver", ["apgs", "pdas"])
+def test_what_is_good_enough_at_maxiter_is_accepted(solver: str) -> None:
+    # the budget of so few contacts is more than maxiter
+    lmp, bed = falling(60, friction=0.8, accuracy="tight", solver=solver)
+    lmp.commands_list(["timestep 5e-4", "run 150"])
+    stats = bed.stats
+    assert stats["unconverged_steps"][-1] == 0
+    assert stats["accepted_steps"][-1] > 0
+    assert stats["relative_residual"].max() <= 30e-4
+    assert stats["largest_overlap_ratio"].max() <= 1.02e-4  # overlaps round
+    lmp.close()
+
+
+@pytest.mark.parametrize("solver", ["pdas", "sal"])
+def test_local_laws_end_within_the_bound_on_overlaps(solver: str) -> None:
+    lmp, bed = falling(friction=0.5, solver=solver)
+    lmp.commands_list(["timestep 5e-4", "run 150"])
+    assert bed.stats["unconverged_steps"][-1] == 0
+    assert bed.stats["largest_overlap_ratio"].max() <= 1.02 * 5e-4  # overlaps round
+    lmp.close()
+
+
+def test_accepted_steps_that_would_make_energy_keep_their_bound_on_overlaps() -> None:
+    # grains that a force drives down a wall onto the floor, beside a bed; blends with no impulses left 2e-3 in step 182
+    r, mu, away = 4e-4, 0.5, 40e-3
+    bed, n = cloud(1500, (0.25e-3, 0.5e-3), 16e-3), 30
+    column = [(away - r, 8e-3, 5e-3 + 2 * r * k) for k in range(n)]
+    balls = grains(np.vstack([column, bed.x]), np.concatenate([np.full(n, r), bed.radius]))
+    lmp = start(balls, DT, gravity=GRAVITY, box=[(-1e-4, away + 1e-4), (-1e-4, 16.1e-3), (-1e-3, 35e-3)])
+    press = 1.01 * float(balls.mass[0]) * GRAVITY / mu
+    lmp.commands_list([f"group column id <= {n}", f"fix press column addforce {press!r} 0 0"])
+    sides = [((0, 0, 0), (1, 0, 0)), ((away, 0, 0), (-1, 0, 0)), ((0, 0, 0), (0, 1, 0)), ((0, 16e-3, 0), (0, -1, 0))]
+    walls = [FLOOR, *(nscd_lmp.Plane(point, normal) for point, normal in sides)]
+    hard = harden(lmp, friction=mu, accuracy="loose", walls=walls)
+    lmp.command("run 240")
+    assert hard.stats["unconverged_steps"][-1] == 0
+    assert hard.stats["accepted_steps"][-1] > 0
+    assert hard.stats["largest_overlap_ratio"].max() <= 1.02e-3  # overlaps round
+    lmp.close()
 
 
 def test_accepted_steps_make_no_energy() -> None:

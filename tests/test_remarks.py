@@ -92,6 +92,20 @@ def test_end_of_a_run_tells(run, scene, door):
 
 
 @pytest.mark.parametrize("door", DOORS)
+def test_what_is_given_up_is_told_by_the_island_that_is_off(run, door):
+    # beside a ball that 1e6 times its weight presses down, a column is 1e-6 of all that contacts have to stop
+    def column_beside_press() -> Any:
+        lmp = start(grains([(0, 0, R), (4 * R, 0, R), (4 * R, 0, 3 * R), (4 * R, 0, 5 * R)], R), 1e-4, gravity=GRAVITY)
+        load = 1e6 * GRAVITY * float(lmp.numpy.extract_atom("rmass")[0])
+        lmp.commands_list(["group first id 1", f"fix press first addforce 0 0 {-load!r}"])
+        return lmp, {"maxiter": 2, "solver": "pdas", "walls": [FLOOR]}
+
+    (told,) = run(column_beside_press, door, ["run 1"])
+    off = re.search(r"given up above tol 0\.001 .*off by up to (\S+) of what", told)
+    assert off and float(off[1]) > 1e-2, told
+
+
+@pytest.mark.parametrize("door", DOORS)
 def test_each_run_tells_of_its_own_steps(run, door):
     # the ball has come to rest in the floor after the second run; the overlap is still there
     assert len(run(overlapping, door, ["run 1", "run 3", "thermo 10"])) == 2

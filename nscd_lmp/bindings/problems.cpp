@@ -34,7 +34,7 @@ Request make_request(const std::string &solver, double tol, int maxiter, int bud
   SolverOptions options;
   options.tol = tol;
   options.maxiter = maxiter;
-  options.budget = budget;
+  options.budget.sweeps = budget;
   options.parameter = parameter.value_or(entry.default_parameter);
   options.stop = parse_stop(criterion);
   options.history = &history;
@@ -115,6 +115,7 @@ SolverReport solve_on_grains(GrainProblem &grains, const Request &request)
     report = request.solver.solve(grains.problem(), options);
     const bool met = report.converged;
     options.maxiter -= report.iterations;
+    options.budget.spent += report.iterations;
     report.iterations += before;
     for (std::size_t row = rows; row < options.history->size(); ++row) (*options.history)[row].iterations += before;
     grains.rebuild_bodies();

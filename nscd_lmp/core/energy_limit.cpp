@@ -183,7 +183,8 @@ bool EnergyLimit::limit_restitution(State &s, std::size_t count, From from, cons
   return true;
 }
 
-bool EnergyLimit::limit_unsolved(State &s, std::size_t count, bool gives_back)
+// Against no impulses at all, which are second_ then.
+bool EnergyLimit::makes_energy(State &s, std::size_t count, bool gives_back)
 {
   store(s, count, first_);
   change_across(s.halo, s.bodies, s.friction.spins.data(), [&] {
@@ -191,20 +192,25 @@ bool EnergyLimit::limit_unsolved(State &s, std::size_t count, bool gives_back)
   });
   store(s, count, second_);
   load(s, first_);
-  if (!find_excess(s, count, &second_, gives_back)) return false;
+  return find_excess(s, count, &second_, gives_back);
+}
+
+bool EnergyLimit::limit_unsolved(State &s, std::size_t count, bool gives_back, const std::function<bool()> &go_on)
+{
+  if (!makes_energy(s, count, gives_back) || go_on() || !makes_energy(s, count, gives_back)) return false;
   blend(s, count, &second_, 1);
   return true;
 }
 
 bool EnergyLimit::solve(State &s, std::size_t count, bool newton, From from, bool gives_back,
-                        const std::function<bool()> &solver)
+                        const std::function<bool()> &solver, const std::function<bool()> &go_on)
 {
   bool solved = true;
   const auto watched = [&] { return solved = solver() && solved; };
   if (newton) store(s, count, before_);
   watched();
   bool limited = newton && limit_restitution(s, count, from, watched);
-  if (!solved) limited |= limit_unsolved(s, count, gives_back);
+  if (!solved) limited |= limit_unsolved(s, count, gives_back, [&] { return !limited && go_on(); });
   return limited;
 }
 

@@ -9,6 +9,7 @@
 //
 // An unsolved problem, given up after maxiter, can show any energy. It is blended with no impulses at all
 // until the contacts raise the kinetic energy above that of the free motion no more: they give way, but throw nothing.
+// What was accepted is solved on first: a blend would leave more overlap than an accepted answer may.
 //
 // All of it island by island (islands.hpp): what one makes no other pays for.
 #pragma once
@@ -27,9 +28,10 @@ class EnergyLimit {
 
   // Solves for the first `count` contacts. `newton`: their biases hold restitution e != e_t, so they may be solved
   // twice; they then start from no impulses, or `from` is the step. `gives_back`: their biases give overlaps back,
-  // which may do work. `solver` returns whether it solved the problem. Returns whether the solution had to be blended.
+  // which may do work. `solver` returns whether it solved the problem, `go_on` too, from where that left it.
+  // Returns whether the solution had to be blended.
   bool solve(State &state, std::size_t count, bool newton, From from, bool gives_back,
-             const std::function<bool()> &solver);
+             const std::function<bool()> &solver, const std::function<bool()> &go_on);
 
  private:
   struct Motion {
@@ -46,7 +48,8 @@ class EnergyLimit {
   bool find_excess(State &state, std::size_t count, const Motion *before, bool gives_back = false);
   void blend(State &state, std::size_t count, const Motion *before, double of_limit);
   bool limit_restitution(State &state, std::size_t count, From from, const std::function<bool()> &solver);
-  bool limit_unsolved(State &state, std::size_t count, bool gives_back);
+  bool makes_energy(State &state, std::size_t count, bool gives_back);
+  bool limit_unsolved(State &state, std::size_t count, bool gives_back, const std::function<bool()> &go_on);
   void allow_recovery(const State &state, std::size_t count);
 
   Motion before_, first_, second_;

@@ -159,12 +159,18 @@ SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep o
   const double above = surely_above(extent, options);
   Outlook outlook(options.alternative, above / 4);
   RunAway run_away(above);
-  const int budget = options.budget > 0 ? std::max(options.budget, int(options.visits / double(extent.contacts))) : 0;
+  const int budget = options.budget.of(extent.contacts);
   Looks looks(above, options.stop, budget);
   if (Keeps::keeps) looks.at_intervals();
   Criterion seen;
   bool any = false;
   report.converged = false;
+  const auto judge = [&](const Goal &goal) {
+    report.criterion = look(goal);
+    report.converged = meets(report.criterion, goal);
+    report.accepted = report.converged && !solved(report.criterion, options);
+    if (options.history) options.history->push_back(report);
+  };
   for (int s = 1; s <= options.maxiter; ++s) {
     const double corrected = once();
     run_away.look(corrected);
@@ -178,15 +184,12 @@ SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep o
     looks.have_looked(s);
     const bool accepts = budget > 0 && s >= budget;
     const Goal goal = accepts ? options.accepted_goal() : options.goal();
-    const Criterion now = look(goal);
+    report.ran_away = run_away.has_happened();
+    judge(goal);
+    const Criterion now = report.criterion;
     const bool better = !any || is_better(now, seen, options);
     if (better || !Keeps::keeps) seen = now;
     any = true;
-    report.criterion = now;
-    report.converged = meets(now, goal);
-    report.accepted = report.converged && !solved(now, options);
-    report.ran_away = run_away.has_happened();
-    if (options.history) options.history->push_back(report);
     if (report.converged || broken) return report;
     if (better) best.keep();
     if (last || report.ran_away) break;
@@ -200,6 +203,8 @@ SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep o
   }
   best.restore();
   report.criterion = seen;
+  // What was looked at before the budget, or is too fast along the normals alone, may be good enough.
+  if (Keeps::keeps && budget > 0 && report.iterations >= budget && !report.ran_away) judge(options.accepted_goal());
   return report;
 }
 

@@ -8,7 +8,7 @@
 //
 // Source: Jean & Moreau (1992), Jean (1999). Deviation: no relaxation, but for frictional sweeps that go to and fro.
 // Exact visits can: a grain that spins in a corner of friction mu is handed back and forth by a factor -mu^2 a sweep
-// (Relaxation, iterate.hpp).
+// (Relaxation, iterate.hpp). With friction the last approaches are stopped by sweeps along the normals alone.
 //
 // Here: sweeps over grains, matrix free. Sweeps over the rows of a Delassus matrix: matrix_nlgs.hpp.
 #pragma once
@@ -20,6 +20,7 @@
 #include "iterate.hpp"
 #include "matrix_nlgs.hpp"
 #include "momentum.hpp"
+#include "normal_sweeps.hpp"
 #include "visit.hpp"
 
 #include <algorithm>
@@ -147,9 +148,11 @@ SolverReport nlgs_with_friction(Problem &problem, const SolverOptions &options)
     relaxation.look(swept.corrected / share);
     return swept.corrected / share;
   };
-  BestImpulses<M> best(problem);
-  return iterate(extent(problem), options, once,
-                 [&](const Goal &goal) { return measure_across(problem, goal, carried); }, best);
+  int extra = 0;   // sweeps along normals alone
+  const auto look = [&](const Goal &goal) { return measure_parted(problem, options, goal, extra, carried); };
+  SolverReport report = iterate(extent(problem), options, once, look, BestImpulses<M>(problem));
+  report.iterations += extra;
+  return report;
 }
 
 template <class Law>

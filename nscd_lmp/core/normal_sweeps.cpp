@@ -117,4 +117,14 @@ int part_nearby(Problem &problem)
 
 int part_normals(Problem &problem) { return problem.halo ? part_all(problem) : part_nearby(problem); }
 
+Criterion measure_parted(Problem &problem, const SolverOptions &options, const Goal &goal, int &sweeps,
+                         const double *carried)
+{
+  const Criterion seen = measure_across(problem, goal, carried);
+  const bool due = options.budget.sweeps == 0 || goal.worst == off_of_accepted;
+  if (!due || !is_met_by_sums(seen, goal) || !(seen.approach > 1)) return seen;
+  sweeps += part_normals(problem);
+  return measure_across(problem, goal, carried);
+}
+
 }    // namespace nscd

@@ -49,7 +49,8 @@ void Remarks::add(const StepReport &r, Stop stop)
   ++steps_;
   const bool given_up = !r.converged && !r.jammed;
   unconverged_ += given_up;
-  if (given_up) off_ = std::max(off_, stop == Stop::paper ? r.criterion.total() : r.criterion.relative);
+  const double off = stop == Stop::paper ? r.criterion.total() : std::max(r.criterion.relative, r.criterion.island);
+  if (given_up) off_ = std::max(off_, off);
   jammed_ += r.jammed;
   if (r.converged && r.criterion.typical > residual_worth_saying) {
     ++misjudged_;

@@ -157,9 +157,9 @@ static void choose_tolerance(Settings &s)
 Budget budget_of(const Settings &s)
 {
   constexpr double contacts = 2000;   // more than that cost what they cost
-  if (s.budget) return {*s.budget, 0};
+  if (s.budget) return {*s.budget, 0, s.maxiter};
   if (!s.frictional() || s.criterion != Stop::natural) return {};
-  return {numbers(s).budget, contacts * numbers(s).budget};
+  return {numbers(s).budget, contacts * numbers(s).budget, s.maxiter};
 }
 
 static void check_budget(const Settings &s)

@@ -75,11 +75,7 @@ constexpr double residual_worth_saying = 0.1;
 // rho or gamma, whichever the solver takes, as a multiple of 1/W_nn; 0 if it takes none.
 double solver_parameter(const Settings &settings, const SolverEntry &solver);
 
-// When a step may be accepted: after so many sweeps, and visits of contacts, since sweeps of few contacts cost nothing.
-struct Budget {
-  int sweeps = 0;   // 0: never
-  double visits = 0;
-};
+// When a step may be accepted.
 Budget budget_of(const Settings &settings);
 
 // The settings of Barboteu & Dumont (2017): `paper yes`.

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -27,14 +28,27 @@ struct SolverReport {
 // Sweeps with friction end where more of them change nothing that can be seen (docs/friction_accuracy.md).
 constexpr double accepted_tolerances = 30, most_accepted = 0.1;
 
+// When an answer may be accepted: after so many sweeps and visits of contacts, since sweeps of few cost nothing.
+struct Budget {
+  int sweeps = 0;   // 0: never
+  double visits = 0;
+  int most = std::numeric_limits<int>::max();   // sweeps that there may be: what is good enough then is accepted too
+  int spent = 0;    // by those that come before in the same step
+
+  // The first sweep after which it may be; 0: never.
+  int of(std::size_t contacts) const
+  {
+    if (sweeps == 0) return 0;
+    return std::max(1, int(std::min(std::max(double(sweeps), visits / double(contacts)), double(most))) - spent);
+  }
+};
+
 struct SolverOptions {
   double tol = 1e-7;
   int maxiter = 1000;
   double parameter = 1;  // rho or gamma as a multiple of 1/W_nn
   Stop stop = Stop::paper;
-  // Sweeps and visits of contacts after which an answer within accepted_goal() is good enough; 0 sweeps: none ever is.
-  int budget = 0;
-  double visits = 0;
+  Budget budget{};   // for an answer within accepted_goal()
   Goal goal() const { return {stop, tol}; }
   // Of the natural map; the same bound on approaches.
   Goal accepted_goal() const

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace nscd {
 
@@ -39,8 +40,7 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
   options_.stop = *settings_.criterion;
   (options_.stop == Stop::natural ? state_.tol_of_worth : state_.tol_absolute) = options_.tol;
   options_.maxiter = settings_.maxiter;
-  options_.budget = budget_of(settings_).sweeps;
-  options_.visits = budget_of(settings_).visits;
+  options_.budget = budget_of(settings_);
   options_.parameter = solver_parameter(settings_, *solver_);
   const Inertia inertia = settings_.inertia.value_or(dimension == 2 ? Inertia::disc : Inertia::sphere);
   state_.friction.model = choose_model(settings_, dimension);
@@ -163,10 +163,20 @@ void Step::solve_within_energy(const Part &part, EnergyLimit::From from)
 {
   share_among_threads(part.contacts);
   const bool newton = state_.friction.model != Model::frictionless && part.e != part.e_t;
-  const auto solve = [&] { return solve_part(part, options_.maxiter) && !report_.accepted; };
+  const bool before = std::exchange(report_.accepted, false);   // of impacts
+  const auto solve = [&] { return solve_part(part, options_.maxiter); };
+  const auto go_on = [&] {
+    if (!std::exchange(report_.accepted, false)) return false;
+    const Budget budget = std::exchange(options_.budget, {});
+    const bool solved = solve();
+    options_.budget = budget;
+    return solved;
+  };
   const bool gives_back = law_->looks_ahead() && from == EnergyLimit::From::step;
   if (custom_) solve();
-  else energy_limited_ |= energy_limit_.solve(state_, part.contacts, newton, from, gives_back, solve);
+  else energy_limited_ |= energy_limit_.solve(state_, part.contacts, newton, from, gives_back, solve,
+                                                std::ref(go_on));   // as a copy it would be allocated
+  report_.accepted |= before;
 }
 
 SolverReport Step::solve_problem(Problem &problem, const SolverOptions &options)
@@ -185,7 +195,7 @@ SolverReport Step::solve_problem(Problem &problem, const SolverOptions &options)
   return solved;
 }
 
-// Returns whether it is solved.
+// Returns whether it is solved, not just accepted.
 bool Step::solve_part(const Part &part, int maxiter)
 {
   const auto start = Clock::now();
@@ -204,9 +214,12 @@ bool Step::solve_part(const Part &part, int maxiter)
   }
   SolverOptions options = options_;
   options.maxiter = maxiter;
-  if (options.budget > 0) options.budget = std::max(1, options.budget - (report_.iterations - started_at_));
+  options.budget.spent = report_.iterations - started_at_;
   SolverReport solved = solve_problem(problem, options);
-  if (!solved.converged) look_closer(problem, solved.criterion);
+  if (!solved.converged && maxiter == options_.maxiter) {   // it is told how far off; what is swept briefly goes on
+    problem.goal.worst = INFINITY;
+    look_closer(problem, solved.criterion);
+  }
   report_.seconds_solver += seconds(start, Clock::now());
   if (!std::isfinite(solved.criterion.total()))
     fail("solver ", settings_.solver,
@@ -219,7 +232,7 @@ bool Step::solve_part(const Part &part, int maxiter)
   if (report_.converged || !solved.converged) report_.criterion = solved.criterion;
   report_.converged = report_.converged && solved.converged;
   report_.accepted |= solved.accepted;
-  return solved.converged;
+  return solved.converged && !solved.accepted;
 }
 
 void Step::judge()

@@ -120,6 +120,18 @@ TEST(a_grain_that_can_meet_one_without_an_image_is_refused)
   }
 }
 
+// Raised behind a loop that is compiled for several processors, through callers with something to destroy.
+TEST(motion_that_is_too_much_to_look_at_is_refused)
+{
+  Scene scene;
+  constexpr int grains = 8000;
+  for (int i = 0; i < grains; ++i) scene.add({3.0 * i, 0, 0}, 1, 1, {i % 2 ? 1e6 : -1e6, 0, 0});
+  scene.list_pairs(std::vector<std::vector<int>>(grains));
+  scene.reach = 0.3;
+  Step step(settings("law gap"));
+  CHECK_ERROR(scene.advance(step, 0.1), "many times the distance of its neighbors");
+}
+
 // At most those that are listed when it is built.
 static void list_within(Scene &scene)
 {

@@ -92,3 +92,16 @@ TEST(round_off_is_no_residual)
   bodies[0][0] = NAN;
   CHECK(!(measure(problem).relative == 0));
 }
+
+TEST(a_budget_is_of_visits_where_contacts_are_few_and_ends_with_the_sweeps_that_there_may_be)
+{
+  const nscd::Budget of_preset{30, 60000, 1000};
+  CHECK(of_preset.of(5000) == 30);
+  CHECK(of_preset.of(200) == 300);
+  CHECK(of_preset.of(10) == 1000);
+  CHECK((nscd::Budget{.sweeps = 30}.of(10) == 30));
+  CHECK((nscd::Budget{.sweeps = 0, .visits = 60000}.of(10) == 0));
+  // of what comes after other sweeps of the step
+  CHECK((nscd::Budget{30, 60000, 1000, 100}.of(200) == 200));
+  CHECK((nscd::Budget{30, 0, 1000, 100}.of(200) == 1));
+}

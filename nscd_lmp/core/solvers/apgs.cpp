@@ -53,13 +53,10 @@ SolverReport accelerate(Problem &problem, const SolverOptions &options, Sweep sw
     return pace.look(sweep_across(problem, some));
   };
   const auto look = [&](const Goal &goal) {
-    Criterion seen = measure_across(problem, goal);
-    if constexpr (std::remove_reference_t<Best>::keeps)
-      if (is_met_by_sums(seen, goal) && seen.approach > 1 && (options.budget == 0 || goal.worst == off_of_accepted)) {
-        extra += part_normals(problem);
-        pace.momentum.restart();
-        seen = measure_across(problem, goal);
-      }
+    const int before = extra;
+    const Criterion seen = std::remove_reference_t<Best>::keeps ? measure_parted(problem, options, goal, extra)
+                                                                : measure_across(problem, goal);
+    if (extra > before) pace.momentum.restart();
     if (!meets(seen, goal)) return seen;
     bodies.restore(add);
     const bool islands = std::exchange(problem.judges_islands, false);   // they have changed by round-off alone

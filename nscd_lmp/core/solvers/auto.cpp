@@ -93,6 +93,7 @@ class Relay {
     report_.at_round_off = done.at_round_off;
     report_.ran_away |= done.ran_away;
     left_.maxiter -= done.iterations;
+    left_.budget.spent += done.iterations;
   }
 
   // A factorisation that does not end is of no use to those that go on: where nothing can give way its impulses are as
