@@ -107,6 +107,27 @@ FILES = {
             "part_of_contact",
         }
     },
+    "lammps_examples": {
+        "lammps_examples.csv": {
+            "scene",
+            "seed",
+            "kind",
+            "factor",
+            "grains",
+            "steps",
+            "cpu_seconds",
+            "ratio",
+            "overlap_ratio",
+            "sweeps_per_step",
+            "accepted_steps",
+            "given_up_steps",
+            "speed",
+            "height",
+            "kinetic_energy",
+            "speed_off",
+            "height_off",
+        }
+    },
     "solvers": {
         "solvers.csv": {
             "part",

@@ -117,6 +117,9 @@ NSCD_HOT Sums frictional(const Problem &problem, const Range &range, const doubl
   const double *const per_approach = problem.per_approach.data();
   for (std::size_t k = range.first; k < range.last; ++k) {
     const Contact &c = problem.contacts[k];
+    const Contact &soon = problem.contacts[std::min(k + fetch_ahead, range.last - 1)];
+    fetch_bodies(soon, problem.bodies.data());
+    fetch_bodies(soon, problem.sliding.spins);
     const auto &slide = slides[k];
     const auto bare = velocity<M>(c, problem.bodies.data(), problem.sliding.spins);
     const Split<Tangent> v{bare.n + c.bias, bare.t + bias(slide)};
