@@ -20,7 +20,7 @@ NSCD_HOT void bound_approach(State &s, std::size_t first)
     const ContactInfo &info = s.infos[k];
     const double deepest = aim * *s.settings.overlap * info.radius;
     const double deeper = std::max(deepest + info.gap, least_share * deepest);
-    s.per_approach[k] = 1 / ((deeper + plane_gap(s, k) - info.gap) / s.dt - (s.contacts[k].bias - normal_drift(s, k)));
+    s.per_approach[k] = 1 / ((deeper + open_gap(s, k) - info.gap) / s.dt - (s.contacts[k].bias - normal_drift(s, k)));
   }
 }
 

@@ -77,7 +77,7 @@ NSCD_INLINE bool place_contact(State &s, std::size_t k, const Candidate &c)
     if (s.lasting_moment > 0) {
       const Vec4 parting = before + carried_apart(s, c);
       if (passes(separation, distance, radii, parting * s.dt)) {
-        const Turned ahead = turned(separation, distance, parting * s.lasting_moment);
+        const Turned ahead = turned_within(separation, distance, parting * s.lasting_moment, gap);
         normal = ahead.normal;
         curve = ahead.curve;
       }

@@ -24,6 +24,13 @@ NSCD_INLINE Vec4 carried_apart(const State &s, const Candidate &c)
   return without_fourth(s.drift.of[c.atom_i] - (c.atom_j < 0 ? Vec4{} : s.drift.of[c.atom_j]));
 }
 
+// At which the radii of both grow, m/s.
+NSCD_INLINE double growth_of(const State &s, const Candidate &c)
+{
+  if (s.drift.of.empty()) return 0;
+  return s.drift.of[c.atom_i][3] + (c.atom_j < 0 ? 0 : s.drift.of[c.atom_j][3]);
+}
+
 NSCD_INLINE Vec4 drift_of(const State &s, std::size_t k)
 {
   return drift_of(s, {s.infos[k].atom_i, s.infos[k].atom_j}, s.contacts[k].normal);
@@ -52,6 +59,12 @@ NSCD_INLINE double put_apart(const State &s, const Contact &c)
 NSCD_INLINE double plane_gap(const State &s, std::size_t k)
 {
   return s.infos[k].gap + s.infos[k].curve + put_apart(s, s.contacts[k]);
+}
+
+// How far from there the contact may close, m: no plane drives a pair apart, an overlap aside.
+NSCD_INLINE double open_gap(const State &s, std::size_t k)
+{
+  return std::max(plane_gap(s, k), std::min(s.infos[k].gap, 0.0));
 }
 
 // By which an impact of contact k meets faster along its normal than its bodies' mean velocities say, m/s.

@@ -29,6 +29,17 @@ NSCD_INLINE Turned turned(const Vec4 &separation, double distance, const Vec4 &w
   return {normal, dot(normal, separation) - distance};
 }
 
+// The same, or less of the way: the plane lies no nearer than the surface is, for it must not drive pairs apart that
+// others may yet stop.
+NSCD_INLINE Turned turned_within(const Vec4 &separation, double distance, const Vec4 &way, double gap)
+{
+  const Turned all = turned(separation, distance, way);
+  if (all.curve + std::max(gap, 0.0) >= 0) return all;
+  if (!(gap > 0)) return {separation / distance, 0};
+  const Turned less = turned(separation, distance, way * std::sqrt(gap / -all.curve));   // curves grow with the square
+  return {less.normal, std::max(less.curve, -gap)};
+}
+
 // Whether a pair that goes on by `way` (m) for the whole step stays apart. No for ways so long that they turn the pair.
 NSCD_INLINE bool passes(const Vec4 &separation, double distance, double radii, const Vec4 &way)
 {
@@ -37,13 +48,15 @@ NSCD_INLINE bool passes(const Vec4 &separation, double distance, double radii, c
   return dot(end, end) >= radii * radii && dot(separation, end) >= nearest * distance * distance;
 }
 
-// When spheres meet that move on with `parting` (m/s), s; none if they do not.
-inline std::optional<double> meeting(const Vec4 &separation, double radii, const Vec4 &parting)
+// When spheres meet that move on with `parting` (m/s) and whose radii grow by `growth` (m/s, both), s; none if they do
+// not.
+inline std::optional<double> meeting(const Vec4 &separation, double radii, const Vec4 &parting, double growth)
 {
-  const double ahead = dot(separation, separation) - radii * radii, closing = -dot(separation, parting);
+  const double ahead = dot(separation, separation) - radii * radii;
+  const double closing = radii * growth - dot(separation, parting);
   if (!(closing > 0)) return {};
   if (ahead <= 0) return 0;
-  const double discriminant = closing * closing - dot(parting, parting) * ahead;
+  const double discriminant = closing * closing - (dot(parting, parting) - growth * growth) * ahead;
   if (!(discriminant >= 0)) return {};
   return ahead / (closing + std::sqrt(discriminant));
 }

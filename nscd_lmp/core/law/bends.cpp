@@ -37,6 +37,14 @@ Pair pair_now(const State &s, std::size_t k)
           without_fourth(s.bodies[c.i] - s.bodies[c.j]) + carried_apart(s, {info.atom_i, info.atom_j})};
 }
 
+// What impacts have given turns with the plane, and stays as long.
+Vec4 turned_along(const Vec4 &normal, const Vec4 &tangential)
+{
+  const Vec4 along = tangential - normal * dot(normal, tangential);
+  const double now = dot(along, along);
+  return now > 0 ? along * std::sqrt(dot(tangential, tangential) / now) : Vec4{};
+}
+
 // Contact k takes its plane where its pair is `there` apart.
 void turn(State &s, std::size_t k, const Vec4 &there)
 {
@@ -45,6 +53,7 @@ void turn(State &s, std::size_t k, const Vec4 &there)
   const Vec4 start = separation_at_start(s, info);
   const Turned plane = turned(start, std::sqrt(dot(start, start)), there - start);
   c.normal = plane.normal;
+  if (!s.friction.impact_impulse.empty()) s.friction.impact_impulse[k] = turned_along(c.normal, s.friction.impact_impulse[k]);
   info.curve = std::min(0.0, plane.curve);
   info.speed_before = dot(c.normal, start_velocity(s, c.i) - start_velocity(s, c.j)) + normal_drift(s, k);
 }
@@ -89,8 +98,9 @@ std::optional<double> Bends::meet(State &s, std::size_t k) const
     if (closing > 0) moment = std::max((info.gap + put_apart(s, c)) / closing, struck);
   } else {
     const Pair pair = pair_now(s, k);
+    const double growth = growth_of(s, {info.atom_i, info.atom_j});
     const double radii = s.spheres[info.atom_i].radius + s.spheres[info.atom_j].radius;
-    moment = meeting(pair.separation + pair.parting * struck, radii, pair.parting);
+    moment = meeting(pair.separation + pair.parting * struck, radii + growth * struck, pair.parting, growth);
     if (moment) *moment += struck;
     turn(s, k, pair.separation + pair.parting * std::min(moment.value_or(s.dt), s.dt));
   }

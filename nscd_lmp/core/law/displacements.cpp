@@ -16,6 +16,13 @@ NSCD_INLINE double Displacements::rate(const State &s, std::size_t k) const
   return dot(c.normal, mean_[c.i] - mean_[c.j]) + normal_drift(s, k);
 }
 
+// The rate at which it does if all but impacts acts from the start.
+static double solved_rate(const State &s, std::size_t k)
+{
+  const Contact &c = s.contacts[k];
+  return normal_velocity(c, s.bodies.data()) + put_apart(s, c) / s.dt + normal_drift(s, k);
+}
+
 // Whether the contact is left with no more overlap than the solver's tolerance leaves anyway.
 NSCD_INLINE bool Displacements::is_open(const State &s, std::size_t k, double rate) const
 {
@@ -65,15 +72,20 @@ NSCD_HOT void Displacements::find_suspects(const State &s)
   suspects_.resize(count);
 }
 
-// What an impulse displaces acts half-way: as much again makes it act from the start.
-void Displacements::act_at_start(const State &s)
+// What an impulse displaces acts half-way: half of it again makes it act from the start. No more of that than opens the
+// contact, or gives back what the solution does.
+void Displacements::act_earlier(const State &s)
 {
   for (const std::uint32_t k : suspects_) {
     const Contact &c = s.contacts[k];
     if (!(c.impulse > 0)) continue;
-    const Vec4 half = 0.5 * (c.normal * c.impulse + tangential_impulse(s, k));
-    if (!final_[c.i]) mean_[c.i] += half * s.bodies[c.i][3];
-    if (!final_[c.j]) mean_[c.j] -= half * s.bodies[c.j][3];
+    const double of_i = final_[c.i] ? 0 : s.bodies[c.i][3], of_j = final_[c.j] ? 0 : s.bodies[c.j][3];
+    const double opens = -(s.infos[k].gap + s.infos[k].curve) / s.dt;
+    const double missing = std::min(opens, solved_rate(s, k)) - rate(s, k);
+    const double share = std::clamp(missing / ((of_i + of_j) * c.impulse), 0.0, 0.5);
+    const Vec4 earlier = share * (c.normal * c.impulse + tangential_impulse(s, k));
+    mean_[c.i] += earlier * of_i;
+    mean_[c.j] -= earlier * of_j;
   }
 }
 
@@ -84,8 +96,7 @@ bool Displacements::open_contact(const State &s, std::uint32_t k)
   const Contact &c = s.contacts[k];
   if (final_[c.i] && final_[c.j]) return false;
   const double now = rate(s, k);
-  const double solved = normal_velocity(c, s.bodies.data()) + put_apart(s, c) / s.dt + normal_drift(s, k);
-  if (is_open(s, k, now) || now >= solved) return false;
+  if (is_open(s, k, now) || now >= solved_rate(s, k)) return false;
   for (const int b : {c.i, c.j}) {
     mean_[b] = final_velocity(s, b);
     final_[b] = 1;
@@ -113,7 +124,7 @@ void Displacements::fill(State &s)
   add_shift(s);
   find_suspects(s);
   if (sum_everywhere(s, double(suspects_.size())) > 0) {
-    change_across(s.halo, mean_, nullptr, [&] { act_at_start(s); });
+    change_across(s.halo, mean_, nullptr, [&] { act_earlier(s); });
     open_contacts(s);
     while (s.halo && s.halo->spread(final_)) {
       for (int i = 0; i < s.moving(); ++i)

@@ -4,7 +4,7 @@
 // impacts. So every grain takes the midpoint displacement dt (v_k + v_{k+1}) / 2: an impulse then acts half-way through
 // the step, where the normals of lasting contacts are taken (moment.hpp). Impacts with restitution act when they meet.
 // Where that would drive a contact into overlap
-//   1. its own impulse acts from the start of the step on: contacts that grains run into without restitution,
+//   1. its own impulse acts earlier: contacts that grains run into without restitution, so that they touch in the end,
 //   2. both grains take dt v_{k+1}, until all contacts are open. It ends: grains only change in that direction, and if
 //      all have changed the solver's own constraint holds.
 #pragma once
@@ -27,7 +27,7 @@ class Displacements {
   void start_half_way(const State &s);
   void add_shift(const State &s);
   void find_suspects(const State &s);
-  void act_at_start(const State &s);
+  void act_earlier(const State &s);
   bool open_contact(const State &s, std::uint32_t k);
   void open_contacts(const State &s);
 

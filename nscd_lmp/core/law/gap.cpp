@@ -40,7 +40,7 @@ NSCD_HOT void set_biases(State &s, std::size_t first)
     const ContactInfo &info = s.infos[k];
     const double overlap = std::max(0.0, -info.gap - tolerated * info.radius);
     const double cap = recovery_cap * info.kick + tolerance(s, worth(info)) + sudden_approach(s, k);
-    const double plane = plane_gap(s, k);
+    const double plane = open_gap(s, k);
     s.contacts[k].bias =
         (info.gap > 0 ? plane * rate : (plane - info.gap) * rate - std::min(overlap * back, cap)) + normal_drift(s, k);
   }
