@@ -44,7 +44,7 @@ def settled(dim: int, n: int) -> Grains:
 
     The seeds are of beds that have one solution when they are shaken; most have several in one of the tests.
     """
-    balls = cloud(n, (0.25, 0.5), WIDTH[3], seed=14) if dim == 3 else discs(n, seed=3)
+    balls = cloud(n, (0.25, 0.5), WIDTH[3], seed=15) if dim == 3 else discs(n, seed=3)
     sides, height = (-0.1, WIDTH[dim] + 0.1), (-0.1, 1.0 + float(balls.x.max()))
     box = [sides, height if dim == 2 else sides, height]
     lmp = scenes.start(balls, 1e-2, gravity=GRAVITY, vmax=20.0, planar=dim == 2, box=box)

@@ -115,7 +115,7 @@ def test_steps_are_accepted_at_their_budget_and_counted() -> None:
 def test_what_is_good_enough_at_maxiter_is_accepted(solver: str) -> None:
     # the budget of so few contacts is more than maxiter
     lmp, bed = falling(60, friction=0.8, accuracy="tight", solver=solver)
-    lmp.commands_list(["timestep 5e-4", "run 150"])
+    lmp.commands_list(["timestep 5e-4", "run 200"])
     stats = bed.stats
     assert stats["unconverged_steps"][-1] == 0
     assert stats["accepted_steps"][-1] > 0

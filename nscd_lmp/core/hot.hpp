@@ -4,8 +4,8 @@
 // rest of a step 187 -> 131 us, both compiled and run side by side. Fused multiply-add is left out
 // on purpose: without it both versions give the same bits, on every machine.
 //
-// Such a function must not raise errors. GCC takes it for one that never throws, so an exception that leaves it ends the
-// program wherever its caller has something to destroy. It returns what is wrong, and its caller raises.
+// Such a function must not raise errors. GCC takes it for one that never throws, so an exception that leaves it ends
+// the program wherever its caller has something to destroy. It returns what is wrong, and its caller raises.
 #pragma once
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \

@@ -5,8 +5,8 @@
 // has to be the direction of s + t w. A lasting contact acts half-way: to second order that is right for a force that
 // acts all the time. An impact acts when the two meet.
 //
-// The plane through the surface there, n.x = r_i + r_j, is a lower bound of the distance whatever n, since the sum of two
-// spheres is convex: what is kept on its side does not overlap.
+// The plane through the surface there, n.x = r_i + r_j, is a lower bound of the distance whatever n, since the sum of
+// two spheres is convex: what is kept on its side does not overlap.
 #pragma once
 
 #include "contact.hpp"

@@ -71,6 +71,8 @@ constexpr double tolerances = 10;
 // A residual over the velocities that matter, be it those that contacts have to stop or those that a step adds, beyond
 // which what is solved is not to be trusted, whatever the criterion says.
 constexpr double residual_worth_saying = 0.1;
+// Of tol, what impacts under restitution are solved to.
+constexpr double tol_of_impacts = 1e-3;
 
 // rho or gamma, whichever the solver takes, as a multiple of 1/W_nn; 0 if it takes none.
 double solver_parameter(const Settings &settings, const SolverEntry &solver);

@@ -54,7 +54,7 @@ struct Friction {
 struct Courses {
   AlignedVector<Vec4> start{};   // (bodies) m from q_k, where the straight way behind the last impact comes from
   AlignedVector<Vec4> shift{};   // (bodies) m, by which impacts displace more than if they acted half-way
-  std::vector<double> kick{};    // (contacts of a round) m/s: n.u when they meet, less n.u by the bodies' mean velocities
+  std::vector<double> kick{};    // (contacts of a round) m/s: n.u when they meet, less n.u in the middle of the step
   double work = 0;               // of smooth forces on the shift, J in the units of m v^2
 };
 
@@ -108,7 +108,7 @@ struct State {
   std::vector<Candidate> ordered{};      // scratch
 
   Overlap watched_overlap{};           // of near, at the end of the step
-  double lasting_moment = 0;           // s after the start of the step, when lasting contacts act; 0: contacts are sought then
+  double lasting_moment = 0;           // s after where contacts are sought, when those that last act
   double watch = 0;                    // surface distance within which pairs are watched, m
   double smooth_kick = 0;              // largest |dt f / m| of the step, m/s
   double round_off = 0;                // of velocities, m/s

@@ -207,12 +207,13 @@ bool Step::solve_part(const Part &part, int maxiter)
   if (settings_.overlap) problem.per_approach = std::span(state_.per_approach).first(part.contacts);
   problem.judges_contacts = true;
   problem.judges_islands = options_.stop == Stop::natural;
-  problem.goal = options_.goal();
+  SolverOptions options = options_;
+  options.tol *= part.tol;
+  problem.goal = options.goal();
   if (shared_among_threads_) {
     problem.team = team_.get();
     problem.parts = &state_.slabs.parts();
   }
-  SolverOptions options = options_;
   options.maxiter = maxiter;
   options.budget.spent = report_.iterations - started_at_;
   SolverReport solved = solve_problem(problem, options);

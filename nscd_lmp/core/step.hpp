@@ -116,6 +116,7 @@ class Step {
     std::size_t contacts;  // the first ones of the step
     double e, e_t;         // restitution that the biases contain
     double norm;           // of free velocities and biases
+    double tol = 1;        // of options_.tol
   };
   bool doubts_contacts() const;
   bool sweep_briefly(const Part &part, int sweeps);

@@ -19,8 +19,8 @@ void Step::finish()
   tally_contacts();
 }
 
-// Twice what contacts have done to grains, without what moving obstacles gave, J in the units of m v^2. Where planes turn
-// between impacts, no contact alone knows its part.
+// Twice what contacts have done to grains, without what moving obstacles gave, J in the units of m v^2. Where planes
+// turn between impacts, no contact alone knows its part.
 static double work_on_grains(const State &s)
 {
   const bool spins = s.friction.model != Model::frictionless;

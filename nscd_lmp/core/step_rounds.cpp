@@ -110,11 +110,12 @@ void Step::resolve_impacts_first(bool again)
     place_slides(state_, 0);
   }
   for (Contact &c : state_.contacts) c.impulse = 0;
-  report_.impacts_left = law_->impacts(state_, [this](std::size_t count) {
+  const double tol = options_.stop == Stop::natural && !settings_.frictional() ? tol_of_impacts : 1;
+  report_.impacts_left = law_->impacts(state_, [this, tol](std::size_t count) {
     const double norm = keep_free_velocities(state_, 0, count);
     bound_approach_of_impacts(state_, count);
     started_at_ = report_.iterations;
-    solve_within_energy({count, settings_.restitution, settings_.e_t, norm}, EnergyLimit::From::solve);
+    solve_within_energy({count, settings_.restitution, settings_.e_t, norm, tol}, EnergyLimit::From::solve);
   });
 }
 

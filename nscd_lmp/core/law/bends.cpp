@@ -53,7 +53,8 @@ void turn(State &s, std::size_t k, const Vec4 &there)
   const Vec4 start = separation_at_start(s, info);
   const Turned plane = turned(start, std::sqrt(dot(start, start)), there - start);
   c.normal = plane.normal;
-  if (!s.friction.impact_impulse.empty()) s.friction.impact_impulse[k] = turned_along(c.normal, s.friction.impact_impulse[k]);
+  auto &tangential = s.friction.impact_impulse;
+  if (!tangential.empty()) tangential[k] = turned_along(c.normal, tangential[k]);
   info.curve = std::min(0.0, plane.curve);
   info.speed_before = dot(c.normal, start_velocity(s, c.i) - start_velocity(s, c.j)) + normal_drift(s, k);
 }
@@ -87,24 +88,47 @@ void Bends::find_starts(State &s) const
   }
 }
 
+double Bends::last_struck(const State &s, const Contact &c) const
+{
+  const auto at = [&](int body) { return straight_[body] ? char(0) : struck_[body]; };
+  return s.dt / parts_of_step * std::max(at(c.i), at(c.j));
+}
+
 std::optional<double> Bends::meet(State &s, std::size_t k) const
 {
   const Contact &c = s.contacts[k];
-  const ContactInfo &info = s.infos[k];
-  const double struck = s.dt / parts_of_step * std::max(struck_[c.i], struck_[c.j]);
-  std::optional<double> moment;
-  if (info.atom_j < 0) {
-    const double closing = -(normal_velocity(c, s.bodies.data()) + normal_drift(s, k));
-    if (closing > 0) moment = std::max((info.gap + put_apart(s, c)) / closing, struck);
-  } else {
-    const Pair pair = pair_now(s, k);
-    const double growth = growth_of(s, {info.atom_i, info.atom_j});
-    const double radii = s.spheres[info.atom_i].radius + s.spheres[info.atom_j].radius;
-    moment = meeting(pair.separation + pair.parting * struck, radii + growth * struck, pair.parting, growth);
-    if (moment) *moment += struck;
-    turn(s, k, pair.separation + pair.parting * std::min(moment.value_or(s.dt), s.dt));
-  }
+  const double struck = last_struck(s, c);
+  std::optional<double> moment = s.infos[k].atom_j < 0 ? meet_wall(s, k, struck) : meet_grain(s, k, struck);
+  if (moment) *moment += struck;
   return moment && *moment <= s.dt ? moment : std::nullopt;
+}
+
+std::optional<double> Bends::meet_wall(const State &s, std::size_t k, double struck) const
+{
+  const double closing = -(normal_velocity(s.contacts[k], s.bodies.data()) + normal_drift(s, k));
+  const double gap = s.infos[k].gap + put_apart(s, s.contacts[k]);
+  return closing > 0 ? std::optional(std::max(gap / closing - struck, 0.0)) : std::nullopt;
+}
+
+std::optional<double> Bends::meet_grain(State &s, std::size_t k, double struck) const
+{
+  constexpr double most_turned = 0.5;   // cosine: a pair that is turned by more would be let through each other
+  const ContactInfo &info = s.infos[k];
+  const Pair pair = pair_now(s, k);
+  const double growth = growth_of(s, {info.atom_i, info.atom_j});
+  const double radii = s.spheres[info.atom_i].radius + s.spheres[info.atom_j].radius + growth * struck;
+  const Vec4 start = separation_at_start(s, info), now = pair.separation + pair.parting * struck;
+  const auto is_turned = [&](const Vec4 &there) {
+    return dot(there, start) < most_turned * std::sqrt(dot(there, there) * dot(start, start));
+  };
+  const auto moment = meeting(now, radii, pair.parting, growth);
+  const Vec4 there = now + pair.parting * std::clamp(moment.value_or(s.dt - struck), 0.0, s.dt - struck);
+  if (is_turned(now) || is_turned(there)) {
+    turn(s, k, start);
+    return 0;
+  }
+  turn(s, k, there);
+  return moment;
 }
 
 // The smooth forces change velocities evenly: at `moment` they differ by this from those in the middle, along n.
