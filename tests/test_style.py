@@ -55,8 +55,10 @@ def hot_functions() -> dict[str, str]:
     for path in sorted((ROOT / "nscd_lmp").rglob("*.[ch]pp")):
         for part in re.split(r"\bNSCD_HOT\b(?! __attr)", path.read_text())[1:]:
             head, brace, rest = part.partition("\n{\n")
-            if brace:
-                bodies[f"{path.relative_to(ROOT)}: {head.split('(')[0].split()[-1]}"] = rest.partition("\n}")[0]
+            if brace:  # without comments
+                bodies[f"{path.relative_to(ROOT)}: {head.split('(')[0].split()[-1]}"] = re.sub(
+                    "//.*", "", rest.partition("\n}")[0]
+                )
     return bodies
 
 

