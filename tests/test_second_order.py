@@ -82,7 +82,7 @@ def test_bead_that_a_central_force_presses_on_a_ball_grows_by_the_lag_of_the_for
 
 
 def oblique_impact(dt: float, e: float, mu: float, seed: int) -> tuple[float, float]:
-    """Return the relative change of angular momentum in an oblique impact of two spinning balls, and that of momentum."""
+    """Return what an oblique impact of two spinning balls changes of angular momentum, a share, and of momentum."""
     rng, d = np.random.default_rng(seed), 0.1
     apart, offset = rng.uniform(1.5, 1.6) * d, rng.uniform(0.1, 0.8) * d
     spin = rng.uniform(-5, 5, 3)

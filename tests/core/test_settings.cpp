@@ -237,7 +237,7 @@ TEST(the_description_names_what_was_chosen)
 {
   const std::string words = "solver sal law moreau restitution 0.5 rho 0.3 wall plane 0 0 0 0 0 1";
   const std::string text = nscd::describe(nscd::Step(checked(words)));
-  for (const char *part : {"moreau", "SAL", "rho = 0.3/W_nn", "1 wall", "restitution 0.5", "tol 0.001 (natural map)"})
+  for (const char *part : {"moreau", "SAL", "rho = 0.3/W_nn", "1 wall", "restitution 0.5", "tol 1e-06 (natural map)"})
     check::says(__FILE__, __LINE__, text, part);
 }
 
