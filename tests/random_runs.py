@@ -233,7 +233,7 @@ def _judge_reported(step: Step, now: all_pairs.Overlaps, stats: Any) -> None:
     if step.scene.deforms:  # after the step, at a rate that is not known at first
         strain = random_scenes.STRAIN_RATE * step.scene.dt
         jumps = step.number < 3 or step.scene.deforms == "x"  # a box that carries grains carries them after the step
-        round_off += float(step.placed.edges.max()) * (strain if jumps else 3 * strain**2)
+        round_off += float(np.abs(step.placed.edges).sum()) * (strain if jumps else 3 * strain**2)
     for name, true, slack in (
         ("largest_overlap", now.largest, round_off),
         ("largest_overlap_ratio", now.ratio, round_off / smallest + grown * now.ratio),

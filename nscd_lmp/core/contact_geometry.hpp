@@ -77,7 +77,8 @@ NSCD_INLINE bool place_contact(State &s, std::size_t k, const Candidate &c)
     if (s.lasting_moment > 0) {
       const Vec4 parting = before + carried_apart(s, c);
       if (passes(separation, distance, radii, parting * s.dt)) {
-        const Turned ahead = turned_within(separation, distance, parting * s.lasting_moment, gap);
+        const double most = std::max(gap, 0.0) + left_by_planes(s, smaller);
+        const Turned ahead = turned_within(separation, distance, parting * s.lasting_moment, most);
         normal = ahead.normal;
         curve = ahead.curve;
       }

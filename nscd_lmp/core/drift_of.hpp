@@ -61,7 +61,7 @@ NSCD_INLINE double plane_gap(const State &s, std::size_t k)
   return s.infos[k].gap + s.infos[k].curve + put_apart(s, s.contacts[k]);
 }
 
-// How far from there the contact may close, m: no plane drives a pair apart, an overlap aside.
+// How far from there the contact may close, m: no plane drives a pair apart, but what gives an overlap back.
 NSCD_INLINE double open_gap(const State &s, std::size_t k)
 {
   return std::max(plane_gap(s, k), std::min(s.infos[k].gap, 0.0));

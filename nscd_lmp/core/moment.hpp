@@ -29,15 +29,14 @@ NSCD_INLINE Turned turned(const Vec4 &separation, double distance, const Vec4 &w
   return {normal, dot(normal, separation) - distance};
 }
 
-// The same, or less of the way: the plane lies no nearer than the surface is, for it must not drive pairs apart that
-// others may yet stop.
-NSCD_INLINE Turned turned_within(const Vec4 &separation, double distance, const Vec4 &way, double gap)
+// The same, or less of the way, so that the plane is nearer than the surface by `most` (m) at most.
+NSCD_INLINE Turned turned_within(const Vec4 &separation, double distance, const Vec4 &way, double most)
 {
   const Turned all = turned(separation, distance, way);
-  if (all.curve + std::max(gap, 0.0) >= 0) return all;
-  if (!(gap > 0)) return {separation / distance, 0};
-  const Turned less = turned(separation, distance, way * std::sqrt(gap / -all.curve));   // curves grow with the square
-  return {less.normal, std::max(less.curve, -gap)};
+  if (all.curve + most >= 0) return all;
+  if (!(most > 0)) return {separation / distance, 0};
+  const Turned less = turned(separation, distance, way * std::sqrt(most / -all.curve));   // it grows with the square
+  return {less.normal, std::max(less.curve, -most)};
 }
 
 // Whether a pair that goes on by `way` (m) for the whole step stays apart. No for ways so long that they turn the pair.

@@ -55,6 +55,7 @@ struct Courses {
   AlignedVector<Vec4> start{};   // (bodies) m from q_k, where the straight way behind the last impact comes from
   AlignedVector<Vec4> shift{};   // (bodies) m, by which impacts displace more than if they acted half-way
   std::vector<double> kick{};    // (contacts of a round) m/s: n.u when they meet, less n.u in the middle of the step
+  std::vector<char> straight{};  // (bodies) whether its impacts act half-way after all
   double work = 0;               // of smooth forces on the shift, J in the units of m v^2
 };
 
@@ -134,6 +135,13 @@ NSCD_INLINE double left_of_overlap(const State &s, double worth, double radius)
 {
   const double left = tolerances * tolerance(s, worth) * s.dt;
   return s.settings.overlap ? std::min(left, *s.settings.overlap * radius) : left;
+}
+
+// What planes of lasting contacts may leave of an overlap, m: a pair that is stopped on its way to where its plane was
+// taken is off by so much at most. Contacts that push lie at about no gap, and would have none without.
+NSCD_INLINE double left_by_planes(const State &s, double radius)
+{
+  return s.settings.overlap ? share_of_planes * *s.settings.overlap * radius : 0;
 }
 
 // Over all ranks.

@@ -71,9 +71,9 @@ void Step::solve()
     if (!briefly) solve_within_energy(part, EnergyLimit::From::step);
     calmed_ = !briefly && !report_.converged ? calm_.slow_down(state_, part.contacts) : Calm::Found{};
     if (halo_) halo_->refresh(state_);
-    law_->displace(state_);
+    const bool differently = law_->displace(state_);
     first = state_.contacts.size();
-    grows = promote();
+    grows = promote() || differently;
     sweeps *= 2;
     briefly = briefly && grows && sweeps <= most_sweeps;
   }

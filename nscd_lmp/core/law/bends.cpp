@@ -73,13 +73,13 @@ Bends::Bends(State &s)
   s.courses.start.assign(s.bodies.size(), Vec4{});
   s.courses.work = 0;
   struck_.assign(s.bodies.size(), 0);
-  straight_.assign(s.bodies.size(), 0);
+  s.courses.straight.resize(s.bodies.size());
 }
 
 void Bends::find_starts(State &s) const
 {
   for (int i = 0; i < s.moving(); ++i) {
-    if (!is_grain(s, i) || straight_[i]) {
+    if (!is_grain(s, i) || s.courses.straight[i]) {
       s.courses.start[i] = Vec4{};
       continue;
     }
@@ -90,7 +90,7 @@ void Bends::find_starts(State &s) const
 
 double Bends::last_struck(const State &s, const Contact &c) const
 {
-  const auto at = [&](int body) { return straight_[body] ? char(0) : struck_[body]; };
+  const auto at = [&](int body) { return s.courses.straight[body] ? char(0) : struck_[body]; };
   return s.dt / parts_of_step * std::max(at(c.i), at(c.j));
 }
 
@@ -135,7 +135,9 @@ std::optional<double> Bends::meet_grain(State &s, std::size_t k, double struck) 
 double Bends::kick_until(const State &s, std::size_t k, double moment) const
 {
   const Contact &c = s.contacts[k];
-  const auto kick = [&](int body) { return is_grain(s, body) && !straight_[body] ? smooth_kick(s, body) : Vec4{}; };
+  const auto kick = [&](int body) {
+    return is_grain(s, body) && !s.courses.straight[body] ? smooth_kick(s, body) : Vec4{};
+  };
   return dot(c.normal, kick(c.i) - kick(c.j)) * (moment / s.dt - 0.5);
 }
 
@@ -181,7 +183,8 @@ void Bends::act(State &s, std::size_t count)
       const Vec4 way = (c.normal * c.impulse + tangential_impulse(s, k)) * (0.5 * s.dt - moment);
       s.courses.work += c.impulse * s.courses.kick[k];
       for (const int body : {c.i, c.j}) {
-        if (!straight_[body]) s.courses.shift[body] += way * (body == c.i ? s.bodies[body][3] : -s.bodies[body][3]);
+        const double moved = body == c.i ? s.bodies[body][3] : -s.bodies[body][3];
+        if (!s.courses.straight[body]) s.courses.shift[body] += way * moved;
         if (c.impulse > 0 && is_grain(s, body)) struck_[body] = std::max(struck_[body], parts(s, moment));
       }
     }
@@ -201,19 +204,38 @@ void Bends::find_contradictions(State &s)
     if (put_apart(s, c) == 0 || is_kept()) continue;
     meet(s, k);
     if (is_kept()) continue;
-    for (const int body : {c.i, c.j}) straight_[body] = is_grain(s, body);
+    for (const int body : {c.i, c.j}) s.courses.straight[body] = is_grain(s, body);
+  }
+}
+
+// Shifts of straight bodies are taken back, and planes between them that would drive pairs apart.
+void Bends::take_back(State &s)
+{
+  for (std::size_t b = 0; b < s.courses.straight.size(); ++b)
+    if (s.courses.straight[b]) s.courses.shift[b] = Vec4{};
+  find_starts(s);
+  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
+    const Contact &c = s.contacts[k];
+    const ContactInfo &info = s.infos[k];
+    const auto is_straight = [&s](int body) { return s.courses.straight[body] || !is_grain(s, body); };
+    const bool is_nearer = info.gap + info.curve < std::min(info.gap, 0.0);
+    if (is_straight(c.i) && is_straight(c.j) && is_nearer) turn(s, k, separation_at_start(s, info));
   }
 }
 
 bool Bends::straighten(State &s)
 {
-  const Parts before = straight_;
+  const Parts before = s.courses.straight;
   find_contradictions(s);
-  if (s.halo) s.halo->spread(straight_);
-  for (std::size_t b = 0; b < straight_.size(); ++b)
-    if (straight_[b]) s.courses.shift[b] = Vec4{};
-  find_starts(s);
-  return sum_everywhere(s, double(straight_ != before)) > 0;
+  if (s.halo) s.halo->spread(s.courses.straight);
+  take_back(s);
+  return sum_everywhere(s, double(s.courses.straight != before)) > 0;
+}
+
+void Bends::straighten_all(State &s)
+{
+  for (std::size_t b = 0; b < s.courses.straight.size(); ++b) s.courses.straight[b] = is_grain(s, int(b));
+  take_back(s);
 }
 
 }    // namespace nscd

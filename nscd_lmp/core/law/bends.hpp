@@ -39,6 +39,8 @@ class Bends {
   void act(State &state, std::size_t count);
   // Takes back courses that contradict each other. Returns whether there are any, anywhere. Collective.
   bool straighten(State &state);
+  // Takes all courses back, where impacts are left: what takes them as inelastic knows nothing of courses. Local.
+  void straighten_all(State &state);
 
  private:
   using Parts = std::vector<char>;   // (bodies) hundredths of the step
@@ -50,10 +52,10 @@ class Bends {
   std::optional<double> meet_grain(State &state, std::size_t k, double struck) const;
   double kick_until(const State &state, std::size_t k, double moment) const;
   void find_contradictions(State &state);
+  void take_back(State &state);
 
   std::vector<Meeting> meetings_;
   Parts struck_;      // when each body was last
-  Parts straight_;    // whether impacts of a body act half-way
   Parts sooner_;      // parts of the step that are left when each body is next
 };
 

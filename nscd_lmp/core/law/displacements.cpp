@@ -118,7 +118,21 @@ void Displacements::open_contacts(const State &s)
   }
 }
 
-void Displacements::fill(State &s)
+// Contacts that overlap since a course comes from beyond their surface.
+bool Displacements::straighten_broken(State &s) const
+{
+  std::vector<char> &straight = s.courses.straight;
+  const std::vector<char> before = straight;
+  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
+    const Contact &c = s.contacts[k];
+    if (put_apart(s, c) >= 0 || is_open(s, k, rate(s, k)) || rate(s, k) >= 0) continue;
+    for (const int b : {c.i, c.j}) straight[b] = s.bodies[b][3] > 0;
+  }
+  if (s.halo) s.halo->spread(straight);
+  return sum_everywhere(s, double(straight != before)) > 0;
+}
+
+bool Displacements::fill(State &s)
 {
   start_half_way(s);
   add_shift(s);
@@ -136,6 +150,7 @@ void Displacements::fill(State &s)
     const Vec4 &w = mean_[i];
     s.displacement[i] = Vec4{w[0], w[1], w[2], 0} * (way(s, i) == Way::stands ? 0.0 : s.dt);
   }
+  return !s.courses.start.empty() && straighten_broken(s);
 }
 
 }    // namespace nscd

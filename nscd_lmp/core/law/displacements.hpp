@@ -18,8 +18,9 @@ namespace nscd {
 
 class Displacements {
  public:
-  // Fills state.displacement from the velocities in state.bodies. Collective.
-  void fill(State &state);
+  // Fills state.displacement from the velocities in state.bodies. Returns whether courses are to be straight that were
+  // not, since contacts stop what courses rely on: then impacts have to be resolved again. Collective.
+  bool fill(State &state);
 
  private:
   NSCD_INLINE double rate(const State &s, std::size_t k) const;
@@ -30,6 +31,7 @@ class Displacements {
   void act_earlier(const State &s);
   bool open_contact(const State &s, std::uint32_t k);
   void open_contacts(const State &s);
+  bool straighten_broken(State &s) const;
 
   AlignedVector<Vec4> mean_;      // per body: mean velocity of its way
   std::vector<char> final_;       // per body: moves with v_{k+1}

@@ -56,7 +56,7 @@ class Gap final : public Law {
   }
   bool impacts(State &s, const SolvePart &solve) override { return resolve_impacts(s, solve); }
   void set_bias(State &s, std::size_t first) override { set_biases(s, first); }
-  void displace(State &s) override { displacements_.fill(s); }
+  bool displace(State &s) override { return displacements_.fill(s); }
 
  private:
   Displacements displacements_;

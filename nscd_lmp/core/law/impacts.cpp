@@ -110,6 +110,7 @@ bool resolve_impacts(State &s, const SolvePart &solve)
     keep_impulses(s, closing.here);
     closing = select_closing(s, bends);
   }
+  if (closing.all > 0) bends.straighten_all(s);
   s.courses.kick.clear();
   smooth_half(s, +1);
   const double e = s.settings.restitution;

@@ -34,13 +34,14 @@ class Moreau final : public Law {
       s.contacts[k].bias = e * s.infos[k].speed_before + normal_drift(s, k);
   }
 
-  void displace(State &s) override
+  bool displace(State &s) override
   {
     const double step = s.settings.theta * s.dt;
     for (int i = 0; i < s.moving(); ++i) {
       const Body &b = s.bodies[i];
       s.displacement[i] = Vec4{b[0], b[1], b[2], 0} * (way(s, i) == Way::stands ? 0.0 : step);
     }
+    return false;
   }
 };
 
