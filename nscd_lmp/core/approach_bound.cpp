@@ -9,8 +9,8 @@ namespace nscd {
 
 // Where no deeper overlap is allowed, a step may still add this share of what is: sweeps end, but never quite.
 constexpr double least_share = 0.01;
-// Of the bound, at which a step aims: what contacts that are there may still add, and planes, keeps within it.
-constexpr double aim = 1 - share_of_planes - 2 * least_share;
+// Of the bound, at which a step aims: what contacts that are there may still add keeps within it.
+constexpr double aim = 1 - 2 * least_share;
 
 NSCD_HOT void bound_approach(State &s, std::size_t first)
 {

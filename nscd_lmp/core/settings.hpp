@@ -71,8 +71,8 @@ constexpr double tolerances = 10;
 // A residual over the velocities that matter, be it those that contacts have to stop or those that a step adds, beyond
 // which what is solved is not to be trusted, whatever the criterion says.
 constexpr double residual_worth_saying = 0.1;
-// Of the bound on overlaps, what planes of lasting contacts may take.
-constexpr double share_of_planes = 0.1;
+// Of the bound on overlaps, by how much planes of lasting contacts may be nearer than the surface.
+constexpr double share_of_planes = 0.5;
 // Of tol, what impacts under restitution are solved to.
 constexpr double tol_of_impacts = 1e-3;
 

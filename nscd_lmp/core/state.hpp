@@ -137,8 +137,8 @@ NSCD_INLINE double left_of_overlap(const State &s, double worth, double radius)
   return s.settings.overlap ? std::min(left, *s.settings.overlap * radius) : left;
 }
 
-// What planes of lasting contacts may leave of an overlap, m: a pair that is stopped on its way to where its plane was
-// taken is off by so much at most. Contacts that push lie at about no gap, and would have none without.
+// By how much planes of lasting contacts may be nearer than the surface, m. Contacts that push lie at about no gap:
+// none of them could take its plane half-way without. A pair that is stopped on its way there may overlap by so much.
 NSCD_INLINE double left_by_planes(const State &s, double radius)
 {
   return s.settings.overlap ? share_of_planes * *s.settings.overlap * radius : 0;

@@ -132,6 +132,14 @@ NSCD_HOT void Step::start_contacts(std::size_t first, bool again)
   change_across(halo_.get(), state_.bodies, state_.friction.spins.data(), [&] { memory_.recall(state_, first); });
 }
 
+// Biases once the law has turned some contacts.
+void Step::start_turned()
+{
+  law_->set_bias(state_, 0);
+  set_tangential_bias(state_, 0, law_->tangential_restitution_in_bias(settings_));
+  bound_approach(state_, 0);
+}
+
 // A custom solver is shown the bodies without the impulses that it is to find.
 void Step::ask_custom(std::size_t count)
 {

@@ -106,6 +106,7 @@ class Step {
   void refuse_unless_all_known() const;
   void refuse_drifting(double ahead) const;
   void start_contacts(std::size_t first, bool again);
+  void start_turned();
   void begin_rounds();
   void solve();
   bool promote();

@@ -58,7 +58,7 @@ void Step::solve()
   std::size_t first = 0;
   int sweeps = first_sweeps;
   bool briefly = doubts_contacts(), solved = false;
-  for (bool again = false, grows = false; !solved || grows; again = true) {
+  for (bool again = false, grows = false, differently = false; !solved || grows; again = true) {
     report_.accepted = false;
     if (impacts_first) {
       resolve_impacts_first(again);
@@ -66,12 +66,13 @@ void Step::solve()
       started_at_ = report_.iterations;
     }
     start_contacts(first, again && !impacts_first);
+    if (differently && !impacts_first) start_turned();
     const Part part{state_.contacts.size(), e, e_t, free_norm_};
     solved = !briefly || sweep_briefly(part, sweeps);
     if (!briefly) solve_within_energy(part, EnergyLimit::From::step);
     calmed_ = !briefly && !report_.converged ? calm_.slow_down(state_, part.contacts) : Calm::Found{};
     if (halo_) halo_->refresh(state_);
-    const bool differently = law_->displace(state_);
+    differently = law_->displace(state_);
     first = state_.contacts.size();
     grows = promote() || differently;
     sweeps *= 2;

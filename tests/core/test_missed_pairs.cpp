@@ -183,7 +183,7 @@ TEST(no_pair_is_missed_by_short_lists)
         scene.just_built = true;
         continue;
       }
-      CHECK(true_overlap(scene) < 6e-6);   // what planes may leave: a tenth of overlap, of a radius of 0.12
+      CHECK(true_overlap(scene) < 3e-5);   // what planes may leave: half of overlap, of a radius of 0.12
       CHECK_NEAR(step.report().largest_overlap, true_overlap(scene), 1e-6);
       scene.just_built = step.wants_rebuild();
       rebuilt += scene.just_built;

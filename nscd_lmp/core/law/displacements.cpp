@@ -2,10 +2,12 @@
 
 #include "../across_ranks.hpp"
 #include "../drift_of.hpp"
+#include "../drifted.hpp"
 #include "../hot.hpp"
 #include "../slides.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace nscd {
 
@@ -118,6 +120,21 @@ void Displacements::open_contacts(const State &s)
   }
 }
 
+// Contact k takes the plane of the start of the step, with its impulse.
+static void turn_back(State &s, std::size_t k)
+{
+  Contact &c = s.contacts[k];
+  ContactInfo &info = s.infos[k];
+  double impulse[3];
+  read_impulse(s, k, impulse);
+  remove_impulse(s, k);
+  const Vec4 separation = s.spheres[info.atom_i].centre - s.spheres[info.atom_j].centre;
+  c.normal = separation / std::sqrt(dot(separation, separation));
+  info.curve = 0;
+  info.speed_before = dot(c.normal, start_velocity(s, c.i) - start_velocity(s, c.j)) + normal_drift(s, k);
+  write_impulse(s, k, impulse);
+}
+
 // Contacts that overlap since a course comes from beyond their surface.
 bool Displacements::straighten_broken(State &s) const
 {
@@ -130,6 +147,26 @@ bool Displacements::straighten_broken(State &s) const
   }
   if (s.halo) s.halo->spread(straight);
   return sum_everywhere(s, double(straight != before)) > 0;
+}
+
+// A plane half-way says nothing of a pair that is stopped on the way there.
+bool Displacements::turn_back_broken(State &s)
+{
+  if (!s.settings.overlap) return false;
+  double broken = 0;
+  find_suspects(s);
+  change_across(s.halo, s.bodies, s.friction.spins.data(), [&] {
+    for (const std::uint32_t k : suspects_) {
+      const ContactInfo &info = s.infos[k];
+      const double bound = *s.settings.overlap * info.radius;
+      if (info.curve == 0 || !(info.gap + info.curve + s.dt * rate(s, k) < -bound)) continue;
+      const double end = gap_at(s, {info.atom_i, info.atom_j}, at_end);
+      if (end >= -bound || end >= info.gap) continue;
+      turn_back(s, k);
+      ++broken;
+    }
+  });
+  return sum_everywhere(s, broken) > 0;
 }
 
 bool Displacements::fill(State &s)
@@ -150,7 +187,7 @@ bool Displacements::fill(State &s)
     const Vec4 &w = mean_[i];
     s.displacement[i] = Vec4{w[0], w[1], w[2], 0} * (way(s, i) == Way::stands ? 0.0 : s.dt);
   }
-  return !s.courses.start.empty() && straighten_broken(s);
+  return s.courses.start.empty() ? turn_back_broken(s) : straighten_broken(s);
 }
 
 }    // namespace nscd

@@ -18,8 +18,9 @@ namespace nscd {
 
 class Displacements {
  public:
-  // Fills state.displacement from the velocities in state.bodies. Returns whether courses are to be straight that were
-  // not, since contacts stop what courses rely on: then impacts have to be resolved again. Collective.
+  // Fills state.displacement from the velocities in state.bodies. Returns whether pairs are driven into overlap since
+  // they have not gone where their planes were taken, and the step has to be solved on: with planes of the start of the
+  // step or, where courses relied on what contacts stop, with those of straight courses. Collective.
   bool fill(State &state);
 
  private:
@@ -32,6 +33,7 @@ class Displacements {
   bool open_contact(const State &s, std::uint32_t k);
   void open_contacts(const State &s);
   bool straighten_broken(State &s) const;
+  bool turn_back_broken(State &s);
 
   AlignedVector<Vec4> mean_;      // per body: mean velocity of its way
   std::vector<char> final_;       // per body: moves with v_{k+1}
