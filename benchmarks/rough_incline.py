@@ -152,7 +152,11 @@ def parsed(words: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--seeds", nargs="*", type=int, default=(1, 2))
     parser.add_argument("--seconds", type=float, default=2.0, help="of every run; its second half counts")
     parser.add_argument("--output", type=Path, default=Path())
-    return parser.parse_args(words)
+    parser.add_argument("--quick", action="store_true", help="a few steps, to see that it runs")
+    asked = parser.parse_args(words)
+    if asked.quick:
+        asked.steps, asked.stiffnesses, asked.seeds, asked.seconds = (1e-3,), STIFFNESSES[:1], (1,), 0.05
+    return asked
 
 
 def main(words: Sequence[str] | None = None) -> None:

@@ -80,6 +80,19 @@ FILES = {
         },
         "friction_laws.png": None,
     },
+    "rough_incline": {
+        "rough_incline.csv": {
+            "seed",
+            "dt",
+            "law",
+            "stiffness",
+            "velocity",
+            "scatter",
+            "fraction",
+            "fluctuation",
+            "cpu_per_second",
+        }
+    },
     "friction_accuracy": {
         "friction_accuracy.csv": {
             "part",
