@@ -3,6 +3,7 @@
 
 #include "state.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace nscd {
@@ -13,6 +14,8 @@ inline void swap_contacts(State &s, std::size_t a, std::size_t b)
   std::swap(s.infos[a], s.infos[b]);
   if (!s.per_approach.empty()) std::swap(s.per_approach[a], s.per_approach[b]);
   if (!s.impact_impulse.empty()) std::swap(s.impact_impulse[a], s.impact_impulse[b]);
+  for (auto *const beside : {&s.courses.moment, &s.courses.kick})   // of the first contacts
+    if (std::max(a, b) < beside->size()) std::swap((*beside)[a], (*beside)[b]);
   if (!s.friction.impact_impulse.empty()) std::swap(s.friction.impact_impulse[a], s.friction.impact_impulse[b]);
   with_friction(s.friction.model, [&]<class M>(M) {
     auto &slides = s.friction.slides<M>();

@@ -54,6 +54,7 @@ struct Friction {
 struct Courses {
   AlignedVector<Vec4> start{};   // (bodies) m from q_k, where the straight way behind the last impact comes from
   AlignedVector<Vec4> shift{};   // (bodies) m, by which impacts displace more than if they acted half-way
+  std::vector<double> moment{};  // (contacts of a round) when they meet, s after the start of the step
   std::vector<double> kick{};    // (contacts of a round) m/s: n.u when they meet, less n.u in the middle of the step
   std::vector<char> straight{};  // (bodies) whether its impacts act half-way after all
   double work = 0;               // of smooth forces on the shift, J in the units of m v^2

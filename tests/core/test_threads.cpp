@@ -148,8 +148,8 @@ TEST(threads_give_the_velocities_of_one_with_friction_and_impacts)
 {
   const int side = 12;
   const Scene start = crystal(side);
-  // Where courses of grains contradict each other is a matter of round-off in a crystal that touches everywhere.
-  for (const auto &[words, within] : {std::pair{" friction 0.01", 1e-5}, std::pair{" restitution 0.5", 1e-3},
+  // Whether two impacts are a hundredth of the step apart, and so one after another, is a matter of round-off here.
+  for (const auto &[words, within] : {std::pair{" friction 0.01", 1e-5}, std::pair{" restitution 0.5", 1e-4},
                                       std::pair{" law moreau restitution 0.5 friction 0.1", 1e-5}}) {
     const std::string all = words + floor_and_settings + "apgs";
     const Scene one = solved(start, side, all, 1);

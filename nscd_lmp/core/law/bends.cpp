@@ -179,7 +179,7 @@ void Bends::act(State &s, std::size_t count)
   change_across(s.halo, s.courses.shift, nullptr, [&] {
     for (std::size_t k = 0; k < count; ++k) {
       const Contact &c = s.contacts[k];
-      const double moment = meetings_[k].moment;
+      const double moment = s.courses.moment[k];
       const Vec4 way = (c.normal * c.impulse + tangential_impulse(s, k)) * (0.5 * s.dt - moment);
       s.courses.work += c.impulse * s.courses.kick[k];
       for (const int body : {c.i, c.j}) {

@@ -22,8 +22,7 @@ class Bends {
  public:
   struct Meeting {
     std::size_t contact;
-    double moment;   // s after the start of the step
-    double kick;     // as courses.kick
+    double moment, kick;   // as courses has them
   };
   // Whether contact k, which meets with u (m/s, negative when closing), is an impact.
   using IsImpact = std::function<bool(std::size_t k, double u)>;

@@ -54,11 +54,13 @@ Closing select_closing(State &s, Bends &bends)
   bends.look(s, [&](std::size_t k, double u) {
     return u < -resting_kicks * s.infos[k].kick - tolerances * tolerance(s, worth(s.infos[k]));
   });
+  s.courses.moment.clear();
   s.courses.kick.clear();
   for (const Bends::Meeting &met : bends.first_meetings(s)) {
     swap_contacts(s, met.contact, closing);
     const double u = normal_velocity(s.contacts[closing], s.bodies.data()) + normal_drift(s, closing);
     energy += 0.5 * s.contacts[closing].w_inverse * u * u;
+    s.courses.moment.push_back(met.moment);
     s.courses.kick.push_back(met.kick);
     bias_impact(s, closing++, u, met.kick);
   }
@@ -111,6 +113,7 @@ bool resolve_impacts(State &s, const SolvePart &solve)
     closing = select_closing(s, bends);
   }
   if (closing.all > 0) bends.straighten_all(s);
+  s.courses.moment.clear();
   s.courses.kick.clear();
   smooth_half(s, +1);
   const double e = s.settings.restitution;
