@@ -59,6 +59,13 @@ void turn(State &s, std::size_t k, const Vec4 &there)
   info.speed_before = dot(c.normal, start_velocity(s, c.i) - start_velocity(s, c.j)) + normal_drift(s, k);
 }
 
+// Whether neither course bends.
+bool is_straight(const State &s, const Contact &c)
+{
+  const auto bends = [&s](int body) { return is_grain(s, body) && !s.courses.straight[body]; };
+  return !bends(c.i) && !bends(c.j);
+}
+
 // How far the plane of contact k is at the end of the step, m; an overlap that it had is none.
 double plane_at_end(const State &s, std::size_t k, double u)
 {
@@ -74,6 +81,8 @@ Bends::Bends(State &s)
   s.courses.work = 0;
   struck_.assign(s.bodies.size(), 0);
   s.courses.straight.resize(s.bodies.size());
+  for (std::size_t k = 0; k < s.contacts.size(); ++k)
+    if (s.infos[k].curve < 0 && is_straight(s, s.contacts[k])) turn(s, k, separation_at_start(s, s.infos[k]));
 }
 
 void Bends::find_starts(State &s) const
@@ -98,12 +107,13 @@ std::optional<double> Bends::meet(State &s, std::size_t k) const
 {
   const Contact &c = s.contacts[k];
   const double struck = last_struck(s, c);
-  std::optional<double> moment = s.infos[k].atom_j < 0 ? meet_wall(s, k, struck) : meet_grain(s, k, struck);
+  const bool is_flat = s.infos[k].atom_j < 0 || is_straight(s, c);
+  std::optional<double> moment = is_flat ? meet_plane(s, k, struck) : meet_grain(s, k, struck);
   if (moment) *moment += struck;
   return moment && *moment <= s.dt ? moment : std::nullopt;
 }
 
-std::optional<double> Bends::meet_wall(const State &s, std::size_t k, double struck) const
+std::optional<double> Bends::meet_plane(const State &s, std::size_t k, double struck) const
 {
   const double closing = -(normal_velocity(s.contacts[k], s.bodies.data()) + normal_drift(s, k));
   const double gap = s.infos[k].gap + put_apart(s, s.contacts[k]);
@@ -217,9 +227,7 @@ void Bends::take_back(State &s)
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
     const Contact &c = s.contacts[k];
     const ContactInfo &info = s.infos[k];
-    const auto is_straight = [&s](int body) { return s.courses.straight[body] || !is_grain(s, body); };
-    const bool is_nearer = info.gap + info.curve < std::min(info.gap, 0.0);
-    if (is_straight(c.i) && is_straight(c.j) && is_nearer) turn(s, k, separation_at_start(s, info));
+    if (info.curve < 0 && is_straight(s, c)) turn(s, k, separation_at_start(s, info));
   }
 }
 

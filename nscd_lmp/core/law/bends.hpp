@@ -47,7 +47,7 @@ class Bends {
   double last_struck(const State &state, const Contact &contact) const;
   std::optional<double> meet(State &state, std::size_t k) const;
   // How long behind `struck`, s.
-  std::optional<double> meet_wall(const State &state, std::size_t k, double struck) const;
+  std::optional<double> meet_plane(const State &state, std::size_t k, double struck) const;
   std::optional<double> meet_grain(State &state, std::size_t k, double struck) const;
   double kick_until(const State &state, std::size_t k, double moment) const;
   void find_contradictions(State &state);

@@ -135,6 +135,16 @@ static void turn_back(State &s, std::size_t k)
   write_impulse(s, k, impulse);
 }
 
+// A plane taken elsewhere says nothing of a pair that is stopped on the way there: whether it overlaps for that by more
+// than may be.
+static bool has_left_plane(const State &s, std::size_t k)
+{
+  const ContactInfo &info = s.infos[k];
+  if (info.curve == 0 || !s.settings.overlap) return false;
+  const double end = gap_at(s, {info.atom_i, info.atom_j}, at_end);
+  return end < -*s.settings.overlap * info.radius && end < info.gap;
+}
+
 // Contacts that overlap since a course comes from beyond their surface.
 bool Displacements::straighten_broken(State &s) const
 {
@@ -142,26 +152,22 @@ bool Displacements::straighten_broken(State &s) const
   const std::vector<char> before = straight;
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
     const Contact &c = s.contacts[k];
-    if (put_apart(s, c) >= 0 || is_open(s, k, rate(s, k)) || rate(s, k) >= 0) continue;
+    if (is_open(s, k, rate(s, k))) continue;
+    const bool relied = put_apart(s, c) < 0 && rate(s, k) < 0;
+    if (!relied && !has_left_plane(s, k)) continue;
     for (const int b : {c.i, c.j}) straight[b] = s.bodies[b][3] > 0;
   }
   if (s.halo) s.halo->spread(straight);
   return sum_everywhere(s, double(straight != before)) > 0;
 }
 
-// A plane half-way says nothing of a pair that is stopped on the way there.
 bool Displacements::turn_back_broken(State &s)
 {
-  if (!s.settings.overlap) return false;
   double broken = 0;
   find_suspects(s);
   change_across(s.halo, s.bodies, s.friction.spins.data(), [&] {
     for (const std::uint32_t k : suspects_) {
-      const ContactInfo &info = s.infos[k];
-      const double bound = *s.settings.overlap * info.radius;
-      if (info.curve == 0 || !(info.gap + info.curve + s.dt * rate(s, k) < -bound)) continue;
-      const double end = gap_at(s, {info.atom_i, info.atom_j}, at_end);
-      if (end >= -bound || end >= info.gap) continue;
+      if (!has_left_plane(s, k)) continue;
       turn_back(s, k);
       ++broken;
     }
