@@ -20,7 +20,7 @@ import random_runs
 import random_scenes
 from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
-from random_scenes import Scene
+from random_scenes import Push, Scene
 from test_ranks import execute
 
 MINUTES = float(os.environ.get("NSCD_PROPERTY_MINUTES", 0))
@@ -54,6 +54,63 @@ def explore(check: Callable[..., None], *strategies: Any, examples: int) -> None
         number += 1
         print(f"round {number}", flush=True)
         seed(number)(settings(max_examples=50, **QUIET)(given(drawn)(search)))()
+
+
+CALM: dict[str, Any] = {"sizes": 1.0, "masses": 1.0, "speed": 0.1, "turns": False, "tilt": 0.0, "gravity": False}
+CALM |= {"pushes": (), "obstacles": 0, "move": "stands", "grows": 0.0, "deforms": "", "mu": 0.0, "steps": 1}
+COLUMNS = CALM | {"law": "gap", "tight": False, "layout": "columns", "boundary": "p p f", "dt": 1e-3}
+FOUND = {
+    # impacts that do not end left courses that contradict each other
+    "elastic columns": Scene(n=30, seed=0, room="loose", e=1.0, **COLUMNS | {"obstacles": 1}),
+    # others stop what bends a course
+    "columns of 50 sizes": Scene(
+        n=33,
+        seed=315,
+        room="loose",
+        e=0.5,
+        **COLUMNS | {"sizes": 50.0, "speed": 10.0, "pushes": (Push(grain=1, weights=1000.0, direction=(0, 0, -1)),)},
+    ),
+    # a light grain leaves the plane that it was given
+    "light among heavy": Scene(
+        n=14,
+        seed=482,
+        room="dense",
+        e=0.5,
+        **COLUMNS
+        | {"masses": 806000.0, "layout": "apart", "speed": 1.0, "boundary": "p p p", "dt": 5e-3}
+        | {"pushes": (Push(3, 0.01, (0, 0, 1)), Push(3, 0.01, (0, -1, 1)))},
+    ),
+    # an image moves with two edges of the box
+    "corner of a sheared box": Scene(
+        n=10,
+        seed=233,
+        room="dense",
+        e=0.0,
+        **COLUMNS | {"layout": "overlapping", "speed": 0.0, "tilt": -0.5, "deforms": "none", "law": "moreau"},
+    ),
+}
+
+
+@pytest.mark.parametrize("scene", FOUND.values(), ids=list(FOUND))
+def test_scenes_that_broke_an_invariant(scene: Scene) -> None:
+    random_runs.run(scene)
+
+
+# A million weights: what the core refused when it looked ahead for the next list ended the program.
+@pytest.mark.parametrize("door", ["python", "script"])
+def test_scene_that_moves_too_far_is_refused(door: str) -> None:
+    pushes = (Push(10, 1.0, (0, 0, -1)), Push(0, 1e-5, (1, 0, 0)), Push(38, 1e6, (0, 0, -1)))
+    scene = CALM | {"speed": 10.0, "turns": True, "gravity": True, "pushes": pushes, "obstacles": 1, "move": "linear"}
+    scene |= {
+        "mu": 0.3,
+        "steps": 16,
+        "law": "moreau",
+        "tight": False,
+        "layout": "apart",
+        "boundary": "p p p",
+        "dt": 1e-3,
+    }
+    assert random_runs.run(Scene(n=39, seed=363, room="dense", e=0.0, **scene), door).refused
 
 
 def test_random_scenes_break_no_invariant() -> None:
