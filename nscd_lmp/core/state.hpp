@@ -58,6 +58,13 @@ struct Courses {
   std::vector<double> kick{};    // (contacts of a round) m/s: n.u when they meet, less n.u in the middle of the step
   std::vector<char> straight{};  // (bodies) whether its impacts act half-way after all
   double work = 0;               // of smooth forces on the shift, J in the units of m v^2
+
+  // Keeps the memory.
+  void clear()
+  {
+    start.clear(), shift.clear(), moment.clear(), kick.clear(), straight.clear();
+    work = 0;
+  }
 };
 
 // Walls are bodies of infinite mass. Several copies, used in turn: consecutive wall contacts then do not wait

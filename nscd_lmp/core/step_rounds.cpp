@@ -37,7 +37,7 @@ void Step::begin_rounds()
   report_.converged = true;
   energy_limited_ = false;
   state_.impact_impulse.clear();
-  state_.courses = {};
+  state_.courses.clear();
   state_.friction.impact_impulse.clear();
   place_slides(state_, 0);
   if (halo_) halo_->share_contacts(state_);

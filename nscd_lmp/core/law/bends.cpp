@@ -74,8 +74,9 @@ double plane_at_end(const State &s, std::size_t k, double u)
 
 }    // namespace
 
-Bends::Bends(State &s)
+void Bends::begin(State &s)
 {
+  meetings_.reserve(s.contacts.size());
   s.courses.shift.assign(s.bodies.size(), Vec4{});
   s.courses.start.assign(s.bodies.size(), Vec4{});
   s.courses.work = 0;
@@ -233,11 +234,11 @@ void Bends::take_back(State &s)
 
 bool Bends::straighten(State &s)
 {
-  const Parts before = s.courses.straight;
+  before_ = s.courses.straight;
   find_contradictions(s);
   if (s.halo) s.halo->spread(s.courses.straight);
   take_back(s);
-  return sum_everywhere(s, double(s.courses.straight != before)) > 0;
+  return sum_everywhere(s, double(s.courses.straight != before_)) > 0;
 }
 
 void Bends::straighten_all(State &s)

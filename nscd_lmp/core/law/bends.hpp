@@ -27,8 +27,8 @@ class Bends {
   // Whether contact k, which meets with u (m/s, negative when closing), is an impact.
   using IsImpact = std::function<bool(std::size_t k, double u)>;
 
-  // Bodies have the velocities of the middle of the step.
-  explicit Bends(State &state);
+  // Starts anew. Bodies have the velocities of the middle of the step.
+  void begin(State &state);
   // Finds the impacts that are to come as bodies move now. Contacts that their planes stop are given the plane of the
   // moment when they meet, or, if they do not, of the end of the step.
   void look(State &state, const IsImpact &is_impact);
@@ -54,6 +54,7 @@ class Bends {
   void take_back(State &state);
 
   std::vector<Meeting> meetings_;
+  Parts before_;      // what was straight
   Parts struck_;      // when each body was last
   Parts sooner_;      // parts of the step that are left when each body is next
 };

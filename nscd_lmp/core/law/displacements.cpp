@@ -146,10 +146,10 @@ static bool has_left_plane(const State &s, std::size_t k)
 }
 
 // Contacts that overlap since a course comes from beyond their surface.
-bool Displacements::straighten_broken(State &s) const
+bool Displacements::straighten_broken(State &s)
 {
   std::vector<char> &straight = s.courses.straight;
-  const std::vector<char> before = straight;
+  before_ = straight;
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
     const Contact &c = s.contacts[k];
     if (is_open(s, k, rate(s, k))) continue;
@@ -158,7 +158,7 @@ bool Displacements::straighten_broken(State &s) const
     for (const int b : {c.i, c.j}) straight[b] = s.bodies[b][3] > 0;
   }
   if (s.halo) s.halo->spread(straight);
-  return sum_everywhere(s, double(straight != before)) > 0;
+  return sum_everywhere(s, double(straight != before_)) > 0;
 }
 
 bool Displacements::turn_back_broken(State &s)

@@ -32,10 +32,11 @@ class Displacements {
   void act_earlier(const State &s);
   bool open_contact(const State &s, std::uint32_t k);
   void open_contacts(const State &s);
-  bool straighten_broken(State &s) const;
+  bool straighten_broken(State &s);
   bool turn_back_broken(State &s);
 
   AlignedVector<Vec4> mean_;      // per body: mean velocity of its way
+  std::vector<char> before_;      // what was straight
   std::vector<char> final_;       // per body: moves with v_{k+1}
   std::vector<std::uint32_t> suspects_;   // contacts that may be driven into overlap
 };

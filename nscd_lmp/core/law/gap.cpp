@@ -54,12 +54,13 @@ class Gap final : public Law {
   {
     return settings.restitution > 0 || settings.e_t > 0;
   }
-  bool impacts(State &s, const SolvePart &solve) override { return resolve_impacts(s, solve); }
+  bool impacts(State &s, const SolvePart &solve) override { return resolve_impacts(s, bends_, solve); }
   void set_bias(State &s, std::size_t first) override { set_biases(s, first); }
   bool displace(State &s) override { return displacements_.fill(s); }
 
  private:
   Displacements displacements_;
+  Bends bends_;
 };
 
 }    // namespace

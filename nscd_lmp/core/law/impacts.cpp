@@ -3,7 +3,6 @@
 #include "../contact_order.hpp"
 #include "../drift_of.hpp"
 #include "../slides.hpp"
-#include "bends.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -88,13 +87,13 @@ void keep_impulses(State &s, std::size_t closing)
 
 }    // namespace
 
-bool resolve_impacts(State &s, const SolvePart &solve)
+bool resolve_impacts(State &s, Bends &bends, const SolvePart &solve)
 {
   s.impact_impulse.clear();
   s.friction.impact_impulse.clear();
   s.per_approach.clear();   // of the last step's contacts, which are others
   smooth_half(s, -1);
-  Bends bends(s);
+  bends.begin(s);
   Closing closing = select_closing(s, bends);
   const double first_energy = closing.energy;
   const double contacts = sum_everywhere(s, double(s.contacts.size()));

@@ -21,6 +21,7 @@
 #pragma once
 
 #include "../state.hpp"
+#include "bends.hpp"
 
 #include <functional>
 
@@ -34,6 +35,7 @@ using SolvePart = std::function<void(std::size_t count)>;
 // closing ones are brought to the front. state.impact_impulse: out, what the impacts took, or empty if there were none.
 // Returns whether impacts are left that would have given back more than 1 % of the energy that the first round had: the
 // gap constraint will take it. The same on all ranks.
-bool resolve_impacts(State &state, const SolvePart &solve);
+// `bends`: works on the courses; kept, so that steps do not allocate.
+bool resolve_impacts(State &state, Bends &bends, const SolvePart &solve);
 
 }    // namespace nscd
