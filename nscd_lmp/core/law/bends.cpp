@@ -241,9 +241,17 @@ bool Bends::straighten(State &s)
   return sum_everywhere(s, double(s.courses.straight != before_)) > 0;
 }
 
-void Bends::straighten_all(State &s)
+void Bends::straighten_connected(State &s, std::size_t count)
 {
-  for (std::size_t b = 0; b < s.courses.straight.size(); ++b) s.courses.straight[b] = is_grain(s, int(b));
+  joined_.clear();
+  for (const Contact &c : s.contacts)
+    if (is_grain(s, c.i) && is_grain(s, c.j)) joined_.push_back({c.i, c.j});
+  islands_.find(s.bodies.size(), joined_, s.halo);
+  islands_.clear_sums();
+  for (std::size_t k = 0; k < count; ++k) islands_.add(grain_of(s.contacts[k], s.bodies.data()), {1, 0});
+  if (s.halo) islands_.sum(0)[0] = s.halo->sum(islands_.sum(0)[0]);
+  for (int b = 0; b < s.moving(); ++b)
+    if (is_grain(s, b) && islands_.sum(islands_.of(b))[0] > 0) s.courses.straight[b] = 1;
   take_back(s);
 }
 

@@ -9,7 +9,7 @@
 // half-way.
 #pragma once
 
-#include "../hot.hpp"
+#include "../islands.hpp"
 #include "../state.hpp"
 
 #include <functional>
@@ -38,8 +38,9 @@ class Bends {
   void act(State &state, std::size_t count);
   // Takes back courses that contradict each other. Returns whether there are any, anywhere. Collective.
   bool straighten(State &state);
-  // Takes all courses back, where impacts are left: what takes them as inelastic knows nothing of courses. Local.
-  void straighten_all(State &state);
+  // Takes back the courses of all grains that contacts connect with impacts that are left, the first `count` contacts:
+  // what takes these as inelastic knows nothing of courses. Collective.
+  void straighten_connected(State &state, std::size_t count);
 
  private:
   using Parts = std::vector<char>;   // (bodies) hundredths of the step
@@ -54,6 +55,8 @@ class Bends {
   void take_back(State &state);
 
   std::vector<Meeting> meetings_;
+  Islands islands_;
+  std::vector<Islands::Pair> joined_;
   Parts before_;      // what was straight
   Parts struck_;      // when each body was last
   Parts sooner_;      // parts of the step that are left when each body is next

@@ -111,7 +111,7 @@ bool resolve_impacts(State &s, Bends &bends, const SolvePart &solve)
     keep_impulses(s, closing.here);
     closing = select_closing(s, bends);
   }
-  if (closing.all > 0) bends.straighten_all(s);
+  if (closing.all > 0) bends.straighten_connected(s, closing.here);
   s.courses.moment.clear();
   s.courses.kick.clear();
   smooth_half(s, +1);
