@@ -1,5 +1,6 @@
 #include "approach_bound.hpp"
 
+#include "contact_plane.hpp"
 #include "drift_of.hpp"
 #include "hot.hpp"
 

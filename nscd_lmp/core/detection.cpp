@@ -1,6 +1,7 @@
 #include "detection.hpp"
 
 #include "contact_geometry.hpp"
+#include "contact_plane.hpp"
 #include "drifted.hpp"
 
 #include <optional>
@@ -56,14 +57,12 @@ NSCD_INLINE double gap_of(const Sphere &a, const Sphere &b)
   return std::sqrt(dot(separation, separation)) - a.radius - b.radius;
 }
 
-bool is_own_image(const State &s, const Candidate &c) { return s.owner[c.atom_i] == s.owner[c.atom_j]; }
-
 // A grain can be no contact of itself, so a box that is narrower than a grain would hold an overlap that nothing sees.
 bool overlaps_own_image(const State &s, const Candidate &c)
 {
   constexpr double touches = 1e-9;
   const Sphere &grain = s.spheres[c.atom_i];
-  return is_own_image(s, c) && s.bodies[s.owner[c.atom_i]][3] > 0 &&
+  return s.owner[c.atom_i] == s.owner[c.atom_j] && s.bodies[s.owner[c.atom_i]][3] > 0 &&
       gap_of(grain, s.spheres[c.atom_j]) < -touches * grain.radius;
 }
 
@@ -270,8 +269,6 @@ double left_of_contact(const State &s, const Candidate &c)
   return left_of_overlap(s, kick, smaller_radius(s, c));
 }
 
-Vec4 way_start(const State &s, int body) { return s.courses.start.empty() ? Vec4{} : s.courses.start[body]; }
-
 // gap + dt v_n^{k+1}, which a contact keeps from being negative.
 double gap_constrained(const State &s, const Watched &near)
 {
@@ -279,12 +276,12 @@ double gap_constrained(const State &s, const Watched &near)
   const Body of_i = s.bodies[s.owner[i]];
   if (is_wall(near.pair)) {
     const Vec4 normal = Height(s.settings.walls[wall_index(near.pair)]).normal;
-    return near.gap + dot(normal, way_start(s, s.owner[i]) + s.dt * (of_i + drift_of(s, near.pair, normal)));
+    return near.gap + dot(normal, course_start(s, s.owner[i]) + s.dt * (of_i + drift_of(s, near.pair, normal)));
   }
   const Vec4 separation = s.spheres[i].centre - s.spheres[j].centre;
   const double distance = std::sqrt(dot(separation, separation));
   const Vec4 parting = of_i - s.bodies[s.owner[j]] + drift_of(s, near.pair, separation / distance);
-  const Vec4 starts = way_start(s, s.owner[i]) - way_start(s, s.owner[j]);
+  const Vec4 starts = course_start(s, s.owner[i]) - course_start(s, s.owner[j]);
   return near.gap + dot(separation, starts + s.dt * parting) / distance;
 }
 

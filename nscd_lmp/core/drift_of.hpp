@@ -49,27 +49,6 @@ NSCD_INLINE typename M::Tangent tangential_drift(const State &s, std::size_t k)
   return s.drift.of.empty() ? typename M::Tangent{} : M::from_space(s.contacts[k].normal, drift_of(s, k));
 }
 
-// By which impacts put the start of the contact's way apart, along its normal, m.
-NSCD_INLINE double put_apart(const State &s, const Contact &c)
-{
-  return s.courses.start.empty() ? 0 : dot(c.normal, s.courses.start[c.i] - s.courses.start[c.j]);
-}
-
-// How far the contact's plane is where its way starts, m.
-NSCD_INLINE double plane_gap(const State &s, std::size_t k)
-{
-  return s.infos[k].gap + s.infos[k].curve + put_apart(s, s.contacts[k]);
-}
-
-// How far from there the contact may close, m: no plane drives a pair apart, but what gives an overlap back.
-NSCD_INLINE double open_gap(const State &s, std::size_t k)
-{
-  return std::max(plane_gap(s, k), std::min(s.infos[k].gap, 0.0));
-}
-
-// By which an impact of contact k meets faster along its normal than its bodies' mean velocities say, m/s.
-NSCD_INLINE double impact_kick(const State &s, std::size_t k) { return s.courses.kick.empty() ? 0 : s.courses.kick[k]; }
-
 // At which a contact may give back what radii and box have done suddenly, m/s.
 NSCD_INLINE double sudden_approach(const State &s, std::size_t k)
 {

@@ -111,9 +111,6 @@ void add_slide_impulses(State &s, std::span<const Vec4> impulses)
   });
 }
 
-namespace {
-
-// Adds (n, t) to contact k and its bodies.
 void add_impulse(State &s, std::size_t k, double normal, const Vec4 &tangential)
 {
   Contact &c = s.contacts[k];
@@ -125,8 +122,6 @@ void add_impulse(State &s, std::size_t k, double normal, const Vec4 &tangential)
     apply_tangential<M>(c, dp, s.friction.spin_response, s.bodies.data(), s.friction.spins.data());
   });
 }
-
-}    // namespace
 
 void read_impulse(const State &s, std::size_t k, double *components)
 {

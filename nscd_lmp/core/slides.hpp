@@ -31,6 +31,9 @@ Vec4 tangential_impulse(const State &state, std::size_t k);
 // Adds tangential impulses, one a contact or none at all, to those of the contacts; the bodies have them already.
 void add_slide_impulses(State &state, std::span<const Vec4> impulses);
 
+// Adds an impulse along the normal and a tangential one, in space, to contact k and its bodies, N s.
+void add_impulse(State &state, std::size_t k, double normal, const Vec4 &tangential);
+
 // The impulse of contact k along N, T1[, T2] of tangents(): reads it; takes it from contact and bodies; gives it to a
 // contact that has none, and its bodies.
 void read_impulse(const State &state, std::size_t k, double *components);

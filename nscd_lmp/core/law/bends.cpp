@@ -1,8 +1,7 @@
 #include "bends.hpp"
 
 #include "../across_ranks.hpp"
-#include "../drift_of.hpp"
-#include "../moment.hpp"
+#include "../contact_plane.hpp"
 #include "../slides.hpp"
 
 #include <algorithm>
@@ -24,11 +23,6 @@ struct Pair {
   Vec4 parting;      // m/s
 };
 
-Vec4 separation_at_start(const State &s, const ContactInfo &info)
-{
-  return s.spheres[info.atom_i].centre - s.spheres[info.atom_j].centre;
-}
-
 Pair pair_now(const State &s, std::size_t k)
 {
   const Contact &c = s.contacts[k];
@@ -37,26 +31,12 @@ Pair pair_now(const State &s, std::size_t k)
           without_fourth(s.bodies[c.i] - s.bodies[c.j]) + carried_apart(s, {info.atom_i, info.atom_j})};
 }
 
-// What impacts have given turns with the plane, and stays as long.
-Vec4 turned_along(const Vec4 &normal, const Vec4 &tangential)
-{
-  const Vec4 along = tangential - normal * dot(normal, tangential);
-  const double now = dot(along, along);
-  return now > 0 ? along * std::sqrt(dot(tangential, tangential) / now) : Vec4{};
-}
-
-// Contact k takes its plane where its pair is `there` apart.
+// As take_plane(), with what impacts have given along it.
 void turn(State &s, std::size_t k, const Vec4 &there)
 {
-  Contact &c = s.contacts[k];
-  ContactInfo &info = s.infos[k];
-  const Vec4 start = separation_at_start(s, info);
-  const Turned plane = turned(start, std::sqrt(dot(start, start)), there - start);
-  c.normal = plane.normal;
+  take_plane(s, k, there);
   auto &tangential = s.friction.impact_impulse;
-  if (!tangential.empty()) tangential[k] = turned_along(c.normal, tangential[k]);
-  info.curve = std::min(0.0, plane.curve);
-  info.speed_before = dot(c.normal, start_velocity(s, c.i) - start_velocity(s, c.j)) + normal_drift(s, k);
+  if (!tangential.empty()) tangential[k] = turned_along(s.contacts[k].normal, tangential[k]);
 }
 
 // Whether neither course bends.

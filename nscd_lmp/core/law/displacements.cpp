@@ -1,13 +1,12 @@
 #include "displacements.hpp"
 
 #include "../across_ranks.hpp"
-#include "../drift_of.hpp"
+#include "../contact_plane.hpp"
 #include "../drifted.hpp"
 #include "../hot.hpp"
 #include "../slides.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace nscd {
 
@@ -35,7 +34,7 @@ NSCD_INLINE bool Displacements::is_open(const State &s, std::size_t k, double ra
 // All but impacts acts from the start of the step on.
 static Vec4 final_velocity(const State &s, int body)
 {
-  return s.courses.start.empty() ? s.bodies[body] : s.bodies[body] + s.courses.start[body] / s.dt;
+  return s.bodies[body] + course_start(s, body) / s.dt;
 }
 
 void Displacements::start_half_way(const State &s)
@@ -123,16 +122,12 @@ void Displacements::open_contacts(const State &s)
 // Contact k takes the plane of the start of the step, with its impulse.
 static void turn_back(State &s, std::size_t k)
 {
-  Contact &c = s.contacts[k];
-  ContactInfo &info = s.infos[k];
-  double impulse[3];
-  read_impulse(s, k, impulse);
+  const Contact &c = s.contacts[k];
+  const double normal = c.impulse;
+  const Vec4 tangential = tangential_impulse(s, k);
   remove_impulse(s, k);
-  const Vec4 separation = s.spheres[info.atom_i].centre - s.spheres[info.atom_j].centre;
-  c.normal = separation / std::sqrt(dot(separation, separation));
-  info.curve = 0;
-  info.speed_before = dot(c.normal, start_velocity(s, c.i) - start_velocity(s, c.j)) + normal_drift(s, k);
-  write_impulse(s, k, impulse);
+  take_plane(s, k, separation_at_start(s, s.infos[k]));
+  add_impulse(s, k, normal, turned_along(c.normal, tangential));
 }
 
 // A plane taken elsewhere says nothing of a pair that is stopped on the way there: whether it overlaps for that by more
@@ -180,7 +175,8 @@ bool Displacements::fill(State &s)
   start_half_way(s);
   add_shift(s);
   find_suspects(s);
-  if (sum_everywhere(s, double(suspects_.size())) > 0) {
+  const bool drives = sum_everywhere(s, double(suspects_.size())) > 0;
+  if (drives) {
     change_across(s.halo, mean_, nullptr, [&] { act_earlier(s); });
     open_contacts(s);
     while (s.halo && s.halo->spread(final_)) {
@@ -193,7 +189,7 @@ bool Displacements::fill(State &s)
     const Vec4 &w = mean_[i];
     s.displacement[i] = Vec4{w[0], w[1], w[2], 0} * (way(s, i) == Way::stands ? 0.0 : s.dt);
   }
-  return s.courses.start.empty() ? turn_back_broken(s) : straighten_broken(s);
+  return drives && (s.courses.start.empty() ? turn_back_broken(s) : straighten_broken(s));
 }
 
 }    // namespace nscd

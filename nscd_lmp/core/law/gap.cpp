@@ -2,21 +2,23 @@
 //
 //   S   = { pairs within reach, gap(q_k) < dt (speed_i + speed_j), that free motion brings near (detection.cpp), and
 //           others that the solution would drive into each other: they join and the step is solved on }
-//   gap > 0:  v_n + gap/dt >= 0            no penetration at q_{k+1} = q_k + dt v_{k+1}
+//   gap > 0:  v_n + plane/dt >= 0          no penetration at q_{k+1} = q_k + dt v_{k+1}
 //   gap < 0:  v_n >= min(recovery |gap|/dt, cap)
 //   each complementary to p >= 0
 //
-// Spheres and planes are convex, so the linearised gap is a lower bound: the step leaves no overlap but what
-// the solver's tolerance and contacts that were not foreseen leave. The recovery gives that back slowly: `cap` is a
-// tenth of what the smooth forces change of its two grains' velocities, so that no overlap is ever thrown apart, and
-// what pulls at other grains plays no part. With friction a bed
-// between walls can be wedged: it cannot give anything back, and asking for it makes impulses grow without end. So
-// there an overlap of 3e-5 of the smaller radius is left as it is.
+// A contact that lasts takes its plane half-way through the step, where its impulse acts (moment.hpp). Spheres and
+// planes are convex, so any plane is a lower bound: the step leaves no overlap but what planes nearer than the surface
+// (left_by_planes), the solver's tolerance and contacts that were not foreseen leave. The recovery gives that back
+// slowly: `cap` is a tenth of what the smooth forces change of its two grains' velocities, so that no overlap is ever
+// thrown apart, and what pulls at other grains plays no part. With friction a bed between walls can be wedged: it cannot
+// give anything back, and asking for it makes impulses grow without end. So there an overlap of 3e-5 of the smaller
+// radius is left as it is.
 //
 // Restitution: impacts are resolved ahead of the contacts, one after another (impacts.hpp). Contacts that rest, and
 // contacts pressed without an impact, are inelastic.
 //
-// Fails: an impact starts from where the grain is, up to dt v before the surface.
+// Fails: an inelastic impact starts from where the grain is, up to dt v before the surface.
+#include "../contact_plane.hpp"
 #include "../drift_of.hpp"
 #include "../law.hpp"
 #include "../hot.hpp"

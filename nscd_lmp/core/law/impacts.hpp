@@ -4,12 +4,13 @@
 // and is pressed only because another impact of the same step drives it, would be handed energy. So impacts propagate
 // in rounds, each from the velocities that the round before has left:
 //
-//   S_m     = { contacts that close within the step: gap + dt u_m < 0, faster than resting contacts do }
+//   S_m     = { contacts that meet within the step, faster than resting contacts do: of each grain the first (bends.hpp) }
 //   u_{m+1} >= -e u_m,  p >= 0,  complementary, on S_m                  until S_m is empty
 //   with friction: u_t,m+1 + e_t u_t,m and p_t obey Coulomb's law
 //
-// Half the smooth velocity change of the step acts before the rounds and half after. With the midpoint displacement
-// dt (v_k + v_{k+1}) / 2 this conserves the energy exactly for e = 1, in every round and in the smooth part.
+// Half the smooth velocity change of the step acts before the rounds and half after; u_m is what it is when the pair
+// meets. With the midpoint displacement, and what impacts displace more, this conserves the energy exactly for e = 1, in
+// every round and in the smooth part.
 // In Newton's cradle the ball at the far end leaves.
 //
 // "Faster than resting contacts do" is faster than 2 dt |f|/m + 10 tolerances, f/m the larger one of the two grains. It
@@ -17,7 +18,8 @@
 //
 // Fails: a dense bed under e > 0 would take rounds without end (inelastic collapse). After 1000 rounds, or when they
 // have visited the contacts 50 times in the mean (1000 visits are free), the rest is left to the gap constraint, which
-// is inelastic. A front that runs through a row visits each contact once, in as many rounds as there are contacts.
+// is inelastic, and impacts of the islands with such a rest act half-way. A front that runs through a row visits each
+// contact once, in as many rounds as there are contacts.
 #pragma once
 
 #include "../state.hpp"
