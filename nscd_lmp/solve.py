@@ -80,7 +80,8 @@ def solve(
     tol : float
         The problem is solved when the criterion is below it; in m/s with ``"paper"``.
     maxiter : int
-        Iterations after which it is given up; see `unconverged`. More never leave a larger residual than fewer.
+        Iterations after which it is given up; see `unconverged`. More never leave a larger residual than fewer
+        (`auto`: until it hands over, which depends on how many are left).
     budget : int
         Sweeps after which the problem is accepted with a residual below 30 times `tol` (``"natural"`` only); 0: never.
     warmstart : array_like (n,) or (n, dim), or Solution, optional

@@ -10,9 +10,9 @@
 // planes are convex, so any plane is a lower bound: the step leaves no overlap but what planes nearer than the surface
 // (left_by_planes), the solver's tolerance and contacts that were not foreseen leave. The recovery gives that back
 // slowly: `cap` is a tenth of what the smooth forces change of its two grains' velocities, so that no overlap is ever
-// thrown apart, and what pulls at other grains plays no part. With friction a bed between walls can be wedged: it cannot
-// give anything back, and asking for it makes impulses grow without end. So there an overlap of 3e-5 of the smaller
-// radius is left as it is.
+// thrown apart, and what pulls at other grains plays no part. With friction a bed between walls can be wedged: it
+// cannot give anything back, and asking for it makes impulses grow without end. So there an overlap of 3e-5 of the
+// smaller radius is left as it is.
 //
 // Restitution: impacts are resolved ahead of the contacts, one after another (impacts.hpp). Contacts that rest, and
 // contacts pressed without an impact, are inelastic.

@@ -4,13 +4,13 @@
 // and is pressed only because another impact of the same step drives it, would be handed energy. So impacts propagate
 // in rounds, each from the velocities that the round before has left:
 //
-//   S_m     = { contacts that meet within the step, faster than resting contacts do: of each grain the first (bends.hpp) }
+//   S_m     = { contacts that meet within the step, faster than resting ones do; of each grain the first (bends.hpp) }
 //   u_{m+1} >= -e u_m,  p >= 0,  complementary, on S_m                  until S_m is empty
 //   with friction: u_t,m+1 + e_t u_t,m and p_t obey Coulomb's law
 //
 // Half the smooth velocity change of the step acts before the rounds and half after; u_m is what it is when the pair
-// meets. With the midpoint displacement, and what impacts displace more, this conserves the energy exactly for e = 1, in
-// every round and in the smooth part.
+// meets. With the midpoint displacement, and what impacts displace more, this conserves the energy exactly for e = 1,
+// in every round and in the smooth part.
 // In Newton's cradle the ball at the far end leaves.
 //
 // "Faster than resting contacts do" is faster than 2 dt |f|/m + 10 tolerances, f/m the larger one of the two grains. It
