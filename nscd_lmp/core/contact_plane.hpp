@@ -51,7 +51,7 @@ inline void take_plane(State &s, std::size_t k, const Vec4 &there)
   const Vec4 start = separation_at_start(s, info);
   const Turned plane = turned(start, std::sqrt(dot(start, start)), there - start);
   c.normal = plane.normal;
-  info.curve = std::min(0.0, plane.curve);
+  info.curve = plane.curve;
   info.speed_before = dot(c.normal, start_velocity(s, c.i) - start_velocity(s, c.j)) + normal_drift(s, k);
 }
 

@@ -22,11 +22,13 @@ struct Turned {
   double curve;   // m, <= 0: by how much the plane is nearer than the surface, at the start of the step
 };
 
-// As the pair lies once it has moved by `way` (m).
+// As the pair lies once it has moved by `way` (m). Written as a square: a pair that has not moved has a curve of 0, not
+// of round-off, and none is > 0.
 NSCD_INLINE Turned turned(const Vec4 &separation, double distance, const Vec4 &way)
 {
   const Vec4 there = separation + way, normal = there / std::sqrt(dot(there, there));
-  return {normal, dot(normal, separation) - distance};
+  const Vec4 turn = normal - separation / distance;
+  return {normal, -0.5 * distance * dot(turn, turn)};
 }
 
 // The same, or less of the way, so that the plane is nearer than the surface by `most` (m) at most.
