@@ -199,7 +199,9 @@ def test_law_gap_needs_no_small_step_where_penalty_does() -> None:
     seen = hard(
         balls, 5e-4, 100, sides(stiffness_dt.WIDTH), Look(50), reach=2e-3, law="gap", criterion="natural", tol=1e-6
     )
-    assert outcome(seen) == "converged" and seen.overlap < 2e-5 and seen.energy_rise < 1e-4
+    assert outcome(seen) == "converged" and seen.overlap_left < 1e-6 and seen.energy_rise < 1e-4
+    # planes half-way through a step may be nearer than the surface by half of `overlap`; this is given back
+    assert seen.overlap < 2.5e-4
 
 
 def test_a_large_ball_rests_on_small_ones() -> None:

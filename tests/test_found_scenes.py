@@ -38,8 +38,6 @@ def test_pair_that_meets_late_in_a_step_of_law_moreau_overlaps_and_is_reported(s
     assert (attached.stats["contacts"][-1] if attached else lmp.extract_fix("nscd", 0, 1, 0)) == 0
 
 
-@pytest.mark.xfail(strict=True, reason="law moreau looks for pairs beyond the list up to the middle of the step")
-@pytest.mark.overlaps_not_asked("the xfail asks")
 @BOTH
 def test_pair_beyond_the_list_that_meets_late_in_a_step_of_law_moreau_is_reported(start, door):
     # listed up to 0.17 m apart, 0.19 m at the start and 0.09 m at the end of the step

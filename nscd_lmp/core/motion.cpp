@@ -27,13 +27,13 @@ void free_motion(Motion &m, const State &s, double prediction, double look_ahead
   }
 }
 
-void solved_motion(Motion &m, const State &s)
+void solved_motion(Motion &m, const State &s, double look_ahead)
 {
   resize(m, s);
   for (std::size_t a = 0; a < s.spheres.size(); ++a) m.from[a] = s.spheres[a].centre;
   for (int b = 0; b < s.moving(); ++b) {
     m.one[b] = s.displacement[b];
-    m.other[b] = velocity(s.bodies[b]) * s.dt;
+    m.other[b] = look_ahead > 0 ? velocity(s.bodies[b]) * (s.dt * look_ahead) : s.displacement[b];
   }
 }
 

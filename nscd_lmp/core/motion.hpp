@@ -15,8 +15,8 @@ struct Motion {
 // with the velocities before and after the smooth forces.
 void free_motion(Motion &motion, const State &state, double prediction, double look_ahead);
 
-// After the solve: the displacement, and dt v_{k+1}, which law gap constrains.
-void solved_motion(Motion &motion, const State &state);
+// After the solve: the displacement, and `look_ahead` of a step with v_{k+1}, which law gap constrains.
+void solved_motion(Motion &motion, const State &state, double look_ahead);
 
 // After the step: from q_{k+1}, with v_{k+1}, for `share` of the next one.
 void next_motion(Motion &motion, const State &state, double share);

@@ -102,6 +102,7 @@ class Step {
   void prepare(const PairList &pairs);
   void require_list(double speed);
   void watch_unlisted();
+  void refuse_unwatchable();
   [[noreturn]] void refuse_missed(double cutoff) const;
   void refuse_unless_all_known() const;
   void refuse_drifting(double ahead) const;

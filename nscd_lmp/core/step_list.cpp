@@ -16,14 +16,17 @@ double rounded_up(double value)
   return std::ceil(value / digit * (1 - 1e-9)) * digit;
 }
 
-// The longest way of a body of this rank or a copy, by displacement or dt v_{k+1}.
-double farthest_solved(const State &s)
+// The longest way of a body of this rank or a copy, m: `prediction` of a step with v_k to where contacts are sought, and
+// on by the displacement or, if the law looks ahead, by dt v_{k+1}.
+double farthest_solved(const State &s, double prediction, double look_ahead)
 {
-  double farthest2 = 0;
+  double farthest = 0;
   for (int b = 0; b < s.moving(); ++b) {
-    farthest2 = std::max({farthest2, dot(s.displacement[b], s.displacement[b]), s.dt * s.dt * speed2(s.bodies[b])});
+    const double ahead = look_ahead * s.dt, sought = prediction * s.dt;
+    const double on2 = std::max(dot(s.displacement[b], s.displacement[b]), ahead * ahead * speed2(s.bodies[b]));
+    farthest = std::max(farthest, sought * std::sqrt(speed2(start_velocity(s, b))) + std::sqrt(on2));
   }
-  return std::sqrt(farthest2);
+  return farthest;
 }
 
 // Collective.
@@ -105,23 +108,31 @@ void Step::require_list(double speed)
   });
 }
 
-// After a solve: pairs that its impulses drive together from farther apart than the list has them are watched too.
+// After a solve: pairs that its impulses drive together from farther apart than the list has them are watched too. Where
+// contacts are not sought ahead they can only overlap: that is reported, and no reason to refuse the step.
 void Step::watch_unlisted()
 {
-  if (look_ahead_ == 0) return;
-  double farthest = farthest_solved(state_) + state_.dt * state_.drift.fastest;
+  double farthest = farthest_solved(state_, prediction_, look_ahead_) + state_.dt * state_.drift.fastest;
   if (halo_) farthest = halo_->max(farthest);
   if (Reach{listed_, moved_, farthest}.is_enough()) return;
-  refuse_drifting(farthest);
-  solved_motion(missed_.motion(), state_);
+  const bool for_contacts = look_ahead_ > 0;
+  if (for_contacts) refuse_drifting(farthest);
+  solved_motion(missed_.motion(), state_, look_ahead_);
   if (!missed_.find(state_, 0)) return;
+  if (for_contacts) refuse_unwatchable();
+  if (missed_.excludes()) return;
+  for (const Missed &m : missed_.pairs())
+    if (unlisted_.insert({m.pair.atom_i, m.pair.atom_j}).second) state_.near.push_back({m.pair, m.gap});
+}
+
+// Pairs that cannot be watched, since they may be excluded ones, or an image is not here.
+void Step::refuse_unwatchable()
+{
   const double cutoff = cutoff_to_type(state_, missed_);
   together([&] {
     refuse_unless_all_known();
     if (missed_.excludes() && !missed_.pairs().empty()) refuse_missed(cutoff);
   });
-  for (const Missed &m : missed_.pairs())
-    if (unlisted_.insert({m.pair.atom_i, m.pair.atom_j}).second) state_.near.push_back({m.pair, m.gap});
 }
 
 // Forces can change by as much as they do to velocities in a step.
