@@ -244,8 +244,9 @@ def test_info_names_build_doors_solvers_and_laws(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
     assert cli.main(["info"]) == 0
     shown = capsys.readouterr().out
+    unfolded = re.sub(r" *│\n│ +│ ", "", shown)  # long paths are
     for part in ("20250722", "fix nscd: yes", "nscdplugin", "fix external: yes", "MPI", "OpenMP threads"):
-        assert part in shown
+        assert part in unfolded
     for name in (*nscd_lmp.SOLVERS, *nscd_lmp.LAWS, nscd_lmp.__version__):
         assert name in shown
     for solver in nscd_lmp.SOLVERS.values():

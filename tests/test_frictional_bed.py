@@ -37,7 +37,7 @@ AGREE = 1e-9
 @pytest.fixture(scope="module")
 def beds():
     """Return settled beds of boulders, 60 discs and 60 spheres, by their dimension."""
-    return {2: settled(2, 60), 3: settled(3, 60)}
+    return {2: settled(2), 3: settled(3)}
 
 
 @pytest.fixture(scope="module")

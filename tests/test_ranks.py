@@ -77,7 +77,7 @@ def test_any_number_of_ranks_gives_the_velocities_of_one(answers: Answers, case:
 # by its mean velocity or by that at the end, whichever opens its contacts: where both do but for what a solve is off,
 # ranks may choose otherwise, which is g dt^2 / 2 of its place and below g dt, 2e-3 m/s, in the next step.
 @pytest.mark.parametrize(
-    ("case", "tolerance"), [("box x_python", 2e-3), ("box v_script", 5e-7), ("growth_script", 1e-9)]
+    ("case", "tolerance"), [("box x_python", 2e-3), ("box v_script", 2e-3), ("growth_script", 1e-9)]
 )
 def test_boxes_that_move_and_grains_that_grow_have_the_velocities_of_one_rank(
     answers: Answers, case: str, tolerance: float

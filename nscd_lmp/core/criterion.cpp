@@ -20,38 +20,44 @@ struct Own {
   double w, w_inverse, wt, mu;
 };
 
+// What is summed: the natural map alone, or (42) beside it.
+enum class Sum { natural, all };
+
 struct Sums {
   Criterion of;
   double natural = 0;  // (m/s)^2
 
   // What is as without friction; v includes the bias.
+  template <Sum sum>
   NSCD_INLINE void add_normal(double w, double p, double v)
   {
-    of.bipotential += w * std::max(0.0, -p);
-    of.penetration += std::max(-v, 0.0);  // this order of arguments lets NaN through
+    if (sum == Sum::all) of.bipotential += w * std::max(0.0, -p);
+    if (sum == Sum::all) of.penetration += std::max(-v, 0.0);  // this order of arguments lets NaN through
     const double residual = natural_normal(w, p, v);
     natural += residual * residual;
   }
 
+  template <Sum sum>
   NSCD_INLINE void add_frictionless(double w, double p, double v)
   {
-    add_normal(w, p, v);
-    of.bipotential += std::abs(v * p);
+    add_normal<sum>(w, p, v);
+    if (sum == Sum::all) of.bipotential += std::abs(v * p);
   }
 
-  template <class Tangent>
+  template <Sum sum, class Tangent>
   NSCD_INLINE void add_frictional(const Own &own, const Split<Tangent> &p, const Split<Tangent> &v,
                                   double tangential_scale)
   {
-    add_normal(own.w, p.n, v.n);
+    add_normal<sum>(own.w, p.n, v.n);
+    const double radius = coulomb_radius(own.mu, p.n);
+    const double residual = natural_tangential(own.wt, radius, p.t, v.t);
+    natural += residual * residual;
+    if (sum == Sum::natural) return;
     // What pushes and separates: v p of small grains is too small a number to see it, and friction depends on p.
     of.bipotential += std::max(0.0, std::min(v.n, p.n / own.w_inverse));
-    const double radius = coulomb_radius(own.mu, p.n);
     if (std::isinf(own.mu)) of.bipotential += std::abs(v.n * p.n);
     else of.bipotential += std::abs(v.n * p.n + inner(v.t, p.t) + radius * length(v.t));
-    const double residual = natural_tangential(own.wt, radius, p.t, v.t);
     of.bipotential += tangential_scale * residual;
-    natural += residual * residual;
   }
 
   template <class Tangent>
@@ -90,6 +96,7 @@ struct Sums {
   }
 };
 
+template <Sum what>
 NSCD_HOT Sums frictionless(const Problem &problem, const Range &range, const double *local_velocity)
 {
   Sums sum;
@@ -99,14 +106,14 @@ NSCD_HOT Sums frictionless(const Problem &problem, const Range &range, const dou
     const Contact &c = problem.contacts[k];
     fetch_bodies(problem.contacts[std::min(k + fetch_ahead, range.last - 1)], bodies);
     const double v = normal_velocity(c, bodies) + c.bias;
-    sum.add_frictionless(1 / c.w_inverse, c.impulse, v);
+    sum.add_frictionless<what>(1 / c.w_inverse, c.impulse, v);
     if (per_approach) sum.add_approach(v, per_approach[k]);
     if (local_velocity) sum.of.motion += std::abs(local_velocity[k] - v);
   }
   return sum;
 }
 
-template <class M>
+template <class M, Sum what>
 NSCD_HOT Sums frictional(const Problem &problem, const Range &range, const double *local_velocity)
 {
   using Tangent = typename M::Tangent;
@@ -124,7 +131,7 @@ NSCD_HOT Sums frictional(const Problem &problem, const Range &range, const doubl
     const auto bare = velocity<M>(c, problem.bodies.data(), problem.sliding.spins);
     const Split<Tangent> v{bare.n + c.bias, bare.t + bias(slide)};
     const Own own{1 / c.w_inverse, c.w_inverse, (1 + response) / c.w_inverse, slide.mu};
-    sum.add_frictional<Tangent>(own, {c.impulse, slide.impulse}, v, tangential_scale);
+    sum.add_frictional<what, Tangent>(own, {c.impulse, slide.impulse}, v, tangential_scale);
     if (per_approach) sum.add_approach(v.n, per_approach[k]);
     if (local_velocity)
       sum.add_motion(load_carried<Tangent>(local_velocity + k * carried_doubles<Tangent>), v);
@@ -149,23 +156,30 @@ NSCD_HOT Sums global(const GlobalProblem &problem, const double *u, const double
     }
     const double *own = local_velocity ? local_velocity + k * F::carried : nullptr;
     if constexpr (F::dim == 1) {
-      sum.add_frictionless(d.w, p.n, v.n);
+      sum.add_frictionless<Sum::all>(d.w, p.n, v.n);
       if (own) sum.of.motion += std::abs(*own - v.n);
     } else {
-      sum.add_frictional<Tangent>({d.w, 1 / d.w, d.wt, problem.friction(k)}, p, v, tangential_scale);
+      sum.add_frictional<Sum::all, Tangent>({d.w, 1 / d.w, d.wt, problem.friction(k)}, p, v, tangential_scale);
       if (own) sum.add_motion(load_carried<Tangent>(own), v);
     }
   }
   return sum;
 }
 
+template <Sum what>
 Sums sum_of(const Problem &problem, const Range &range, const double *local_velocity)
 {
   Sums sum;
   const Model model = problem.sliding.model;
-  if (model == Model::frictionless) sum = frictionless(problem, range, local_velocity);
-  with_friction(model, [&]<class M>(M) { sum = frictional<M>(problem, range, local_velocity); });
+  if (model == Model::frictionless) sum = frictionless<what>(problem, range, local_velocity);
+  with_friction(model, [&]<class M>(M) { sum = frictional<M, what>(problem, range, local_velocity); });
   return sum;
+}
+
+Sums sum_of(const Problem &problem, const Range &range, const double *local_velocity)
+{
+  return problem.sums_paper ? sum_of<Sum::all>(problem, range, local_velocity)
+                            : sum_of<Sum::natural>(problem, range, local_velocity);
 }
 
 Sums sum_of(const Problem &problem, const double *local_velocity)

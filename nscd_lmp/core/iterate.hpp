@@ -91,14 +91,15 @@ class Outlook {
 class Looks {
  public:
   // `above`: as surely_above has it. The paper counts the visits of a few contacts, so its criterion is taken after
-  // each of the first.
-  Looks(double above, Stop stop, int budget) : above_(above), always_(stop == Stop::paper ? 4 : 1), budget_(budget)
+  // each of the first. `spent`: sweeps that came before in the same step.
+  Looks(double above, Stop stop, int budget, int spent) :
+      above_(above), always_(stop == Stop::paper ? 4 : 1), budget_(budget), spent_(spent)
   {
   }
 
   // Iterates that do not get better all the time are looked at in fixed intervals too, whatever there is to be seen, so
   // that the best of them is known. More sweeps look at what fewer look at.
-  void at_intervals() { interval_ = 2; }
+  void at_intervals() { interval_ = std::max(2, spent_ / 8); }
 
   bool is_due(int s, double corrected) const
   {
@@ -118,7 +119,7 @@ class Looks {
     constexpr double above_goal = 1.3;   // what is left over falls faster than corrections at times
     enough_ = above_goal * corrected / excess;
     if (s < budget_ || budget_ == 0) enough_ = std::min(enough_, above_);
-    latest_ = s + 1 + s / 4;
+    latest_ = s + 1 + (s + spent_) / 4;
   }
 
   // The same where single contacts or small islands are what is left: sweeps do not show it. It falls about
@@ -129,13 +130,14 @@ class Looks {
     const double rest = a_sweep > 0 ? left / a_sweep : INFINITY;
     left_before_ = left;
     before_ = s;
-    latest_ = s + 1 + int(std::clamp(0.75 * rest - 1, s / 16.0, s / 8.0));
+    const double all = s + spent_;
+    latest_ = s + 1 + int(std::clamp(0.75 * rest - 1, all / 16, all / 8));
     enough_ = 0;
   }
 
  private:
   const double above_;
-  const int always_, budget_;
+  const int always_, budget_, spent_;
   double enough_ = 0, left_before_ = INFINITY;
   int latest_ = 1, before_ = 0, interval_ = 0;
 };
@@ -160,8 +162,9 @@ SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep o
   Outlook outlook(options.alternative, above / 4);
   RunAway run_away(above);
   const int budget = options.budget.of(extent.contacts);
-  Looks looks(above, options.stop, budget);
-  if (Keeps::keeps) looks.at_intervals();
+  Looks looks(above, options.stop, budget, options.budget.spent);
+  const bool keeps = Keeps::keeps && !options.goes_on;
+  if (keeps) looks.at_intervals();
   Criterion seen;
   bool any = false;
   report.converged = false;
@@ -177,7 +180,7 @@ SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep o
     report.iterations = s;
     const bool last = s == options.maxiter || outlook.is_worse_than_alternative(corrected);
     const bool broken = !std::isfinite(corrected);   // nothing good can be restored from what is no number
-    if (!broken && !looks.is_due(s, corrected) && (!last || Keeps::keeps)) {
+    if (!broken && !looks.is_due(s, corrected) && (!last || keeps)) {
       if (last) break;
       continue;
     }
@@ -188,10 +191,10 @@ SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep o
     judge(goal);
     const Criterion now = report.criterion;
     const bool better = !any || is_better(now, seen, options);
-    if (better || !Keeps::keeps) seen = now;
+    if (better || !keeps) seen = now;
     any = true;
     if (report.converged || broken) return report;
-    if (better) best.keep();
+    if (better && keeps) best.keep();
     if (last || report.ran_away) break;
     const double over = excess(now, goal);
     if (!is_met_by_sums(now, goal)) {
@@ -201,10 +204,10 @@ SolverReport iterate(const Extent &extent, const SolverOptions &options, Sweep o
     if (options.stop == Stop::natural) outlook.aim(corrected * goal.tol / now.island);
     looks.were_some_off(s, over);
   }
-  best.restore();
+  if (keeps) best.restore();
   report.criterion = seen;
   // What was looked at before the budget, or is too fast along the normals alone, may be good enough.
-  if (Keeps::keeps && budget > 0 && report.iterations >= budget && !report.ran_away) judge(options.accepted_goal());
+  if (keeps && budget > 0 && report.iterations >= budget && !report.ran_away) judge(options.accepted_goal());
   return report;
 }
 

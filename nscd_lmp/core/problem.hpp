@@ -65,6 +65,7 @@ struct Problem {
   std::span<const double> per_approach{};   // beside the contacts, 1 / the approach that may be left, s/m; or empty
   bool judges_contacts = false;  // whether there are infos; the same on all ranks
   bool judges_islands = false;
+  bool sums_paper = true;   // whether (42) is wanted beside the natural map, which looks on the way can do without
   Goal goal{};
 };
 

@@ -55,6 +55,7 @@ struct SolverOptions {
   {
     return {stop, std::min(accepted_tolerances * tol, most_accepted), off_of_accepted};
   }
+  bool goes_on = false;    // another solve carries the answer on: none is kept on the way
   double alternative = 0;  // sweeps that another solver would cost: give up if more seem to be needed; 0: never
   std::vector<SolverReport> *history = nullptr;  // gets a row whenever the criterion is measured, if given
 };

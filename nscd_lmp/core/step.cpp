@@ -223,6 +223,7 @@ bool Step::solve_part(const Part &part, int maxiter)
     problem.parts = &state_.slabs.parts();
   }
   options.maxiter = maxiter;
+  options.goes_on = maxiter < options_.maxiter;
   options.budget.spent = report_.iterations - started_at_;
   SolverReport solved = solve_problem(problem, options);
   if (!solved.converged && maxiter == options_.maxiter) {   // it is told how far off; what is swept briefly goes on

@@ -16,8 +16,8 @@ double rounded_up(double value)
   return std::ceil(value / digit * (1 - 1e-9)) * digit;
 }
 
-// The longest way of a body of this rank or a copy, m: `prediction` of a step with v_k to where contacts are sought, and
-// on by the displacement or, if the law looks ahead, by dt v_{k+1}.
+// The longest way of a body of this rank or a copy, m: `prediction` of a step with v_k to where contacts are sought,
+// and on by the displacement or, if the law looks ahead, by dt v_{k+1}.
 double farthest_solved(const State &s, double prediction, double look_ahead)
 {
   double farthest = 0;
@@ -108,8 +108,8 @@ void Step::require_list(double speed)
   });
 }
 
-// After a solve: pairs that its impulses drive together from farther apart than the list has them are watched too. Where
-// contacts are not sought ahead they can only overlap: that is reported, and no reason to refuse the step.
+// After a solve: pairs that its impulses drive together from farther apart than the list has them are watched too.
+// Where contacts are not sought ahead they can only overlap: that is reported, and no reason to refuse the step.
 void Step::watch_unlisted()
 {
   double farthest = farthest_solved(state_, prediction_, look_ahead_) + state_.dt * state_.drift.fastest;

@@ -18,7 +18,7 @@ NSCD_INLINE double Displacements::rate(const State &s, std::size_t k) const
 }
 
 // The rate at which it does if all but impacts acts from the start.
-static double solved_rate(const State &s, std::size_t k)
+NSCD_INLINE double solved_rate(const State &s, std::size_t k)
 {
   const Contact &c = s.contacts[k];
   return normal_velocity(c, s.bodies.data()) + put_apart(s, c) / s.dt + normal_drift(s, k);
@@ -32,7 +32,7 @@ NSCD_INLINE bool Displacements::is_open(const State &s, std::size_t k, double ra
 }
 
 // All but impacts acts from the start of the step on.
-static Vec4 final_velocity(const State &s, int body)
+NSCD_INLINE Vec4 final_velocity(const State &s, int body)
 {
   return s.bodies[body] + course_start(s, body) / s.dt;
 }
@@ -92,7 +92,7 @@ void Displacements::act_earlier(const State &s)
 
 // If the contact is driven into overlap, both grains are made to move with v_{k+1}, unless that is worse still.
 // Returns whether that changed a grain.
-bool Displacements::open_contact(const State &s, std::uint32_t k)
+NSCD_INLINE bool Displacements::open_contact(const State &s, std::uint32_t k)
 {
   const Contact &c = s.contacts[k];
   if (final_[c.i] && final_[c.j]) return false;
@@ -100,9 +100,30 @@ bool Displacements::open_contact(const State &s, std::uint32_t k)
   if (is_open(s, k, now) || now >= solved_rate(s, k)) return false;
   for (const int b : {c.i, c.j}) {
     mean_[b] = final_velocity(s, b);
-    final_[b] = 1;
+    final_[b] = lately;
   }
   return true;
+}
+
+// Returns whether that changed a grain.
+NSCD_HOT bool Displacements::open_suspects(const State &s)
+{
+  bool changed = false;
+  for (const std::uint32_t k : suspects_) changed |= open_contact(s, k);
+  return changed;
+}
+
+// Those between a grain that has changed in the pass before and one that has not.
+NSCD_HOT void Displacements::find_neighbors(const State &s)
+{
+  const std::size_t n = s.contacts.size();
+  resize_closely(suspects_, n);
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    suspects_[count] = std::uint32_t(k);
+    count += final_[s.contacts[k].i] + final_[s.contacts[k].j] == lately;
+  }
+  suspects_.resize(count);
 }
 
 // Opens contacts until none is driven into overlap. After the first pass only contacts between a grain that has
@@ -111,11 +132,9 @@ void Displacements::open_contacts(const State &s)
 {
   find_suspects(s);
   for (bool changed = true; changed;) {
-    changed = false;
-    for (const std::uint32_t k : suspects_) changed |= open_contact(s, k);
-    suspects_.clear();
-    for (std::size_t k = 0; k < s.contacts.size() && changed; ++k)
-      if (final_[s.contacts[k].i] != final_[s.contacts[k].j]) suspects_.push_back(std::uint32_t(k));
+    changed = open_suspects(s);
+    if (changed) find_neighbors(s);
+    for (char &is_final : final_) is_final &= 1;
   }
 }
 

@@ -30,14 +30,17 @@ class Displacements {
   void add_shift(const State &s);
   void find_suspects(const State &s);
   void act_earlier(const State &s);
-  bool open_contact(const State &s, std::uint32_t k);
+  NSCD_INLINE bool open_contact(const State &s, std::uint32_t k);
+  bool open_suspects(const State &s);
+  void find_neighbors(const State &s);
   void open_contacts(const State &s);
   bool straighten_broken(State &s);
   bool turn_back_broken(State &s);
 
   AlignedVector<Vec4> mean_;      // per body: mean velocity of its way
   std::vector<char> before_;      // what was straight
-  std::vector<char> final_;       // per body: moves with v_{k+1}
+  static constexpr char lately = 3;   // in the pass before
+  std::vector<char> final_;       // per body: 1, or lately, if it moves with v_{k+1}
   std::vector<std::uint32_t> suspects_;   // contacts that may be driven into overlap
 };
 

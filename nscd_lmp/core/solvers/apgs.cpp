@@ -54,8 +54,10 @@ SolverReport accelerate(Problem &problem, const SolverOptions &options, Sweep sw
   };
   const auto look = [&](const Goal &goal) {
     const int before = extra;
+    problem.sums_paper = options.stop == Stop::paper || options.history;
     const Criterion seen = std::remove_reference_t<Best>::keeps ? measure_parted(problem, options, goal, extra)
                                                                 : measure_across(problem, goal);
+    problem.sums_paper = true;
     if (extra > before) pace.momentum.restart();
     if (!meets(seen, goal)) return seen;
     bodies.restore(add);
