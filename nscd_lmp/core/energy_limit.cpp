@@ -4,6 +4,7 @@
 #include "contact_plane.hpp"
 #include "drift_of.hpp"
 #include "slides.hpp"
+#include "storage.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,9 +39,8 @@ void EnergyLimit::store(const State &s, std::size_t count, Motion &m) const
   m.bodies = s.bodies;
   m.spins = s.friction.spins;
   const bool slides = s.friction.model != Model::frictionless;
-  m.normal.reserve(s.contacts.capacity());
   m.normal.resize(count);
-  if (slides) m.tangential.reserve(s.contacts.capacity()), m.tangential.resize(count);
+  if (slides) m.tangential.resize(count);
   for (std::size_t k = 0; k < count; ++k) m.normal[k] = s.contacts[k].impulse;
   for (std::size_t k = 0; slides && k < count; ++k) m.tangential[k] = tangential_impulse(s, k);
 }
@@ -82,7 +82,7 @@ void EnergyLimit::find_islands(const State &s, std::size_t count)
   for (std::vector<double> *of_islands : {&share_, &limit_, &at_first_, &at_second_, &half_way_})
     of_islands->reserve(s.bodies.size());   // more islands need no more
   joined_.clear();
-  joined_.reserve(s.contacts.capacity());   // as rarely as contacts allocate
+  reserve_closely(joined_, count);
   for (std::size_t k = 0; k < count; ++k) {
     const Contact &c = s.contacts[k];
     const bool pushes = first_.normal[k] != 0 || second_.normal[k] != 0;
@@ -173,7 +173,6 @@ bool EnergyLimit::limit_restitution(State &s, std::size_t count, From from, cons
 {
   const Motion *const before = from == From::step ? nullptr : &before_;
   store(s, count, first_);
-  second_.normal.reserve(s.contacts.capacity());
   second_.normal.assign(count, 0);   // not known yet
   if (!find_excess(s, count, before)) return false;
   load(s, before_);
