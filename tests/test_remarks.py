@@ -50,12 +50,20 @@ def endless() -> Any:
     return lmp, {"restitution": 1.0, "walls": [FLOOR]}
 
 
+def sliding() -> Any:
+    """A ball that slides over a fixed one by 0.025 of a diameter a step, and stays on it."""
+    lmp = start(grains([(0, 0, 0), (0, 0, 2 * R)], R, v=[(0, 0, 0), (0.25, 0, 0)]), 2e-3, gravity=GRAVITY, vmax=2)
+    lmp.command("group free id 2")
+    return lmp, {"group": "free"}
+
+
 TOLD = {
     misjudged: r"1 of 1 steps met tol 1e-07 of criterion \(42\) with velocities that are off by up to 1\.5 .*natural",
     overlapping: r"grains overlap by up to 0\.02 of the smaller radius: use law gap or a smaller timestep",
     overlapping_start: r"grains overlap by up to 0\.05 of the smaller radius: start without overlap, lower tol, or",
     passing: r"grains move by up to 3 of the smallest radius in a step, and law moreau does not see them pass",
     endless: r"in 1 of 1 steps more impacts followed each other than law gap takes one after another, and the rest",
+    sliding: r"grains that push each other pass each other by 0\.025 of a diameter a step, .* 1\.4 times smaller where",
     unsolved: r"1 of 1 steps were given up above tol 1e-12, and .* smaller timestep, or raise maxiter \(now 1\) or tol",
 }
 

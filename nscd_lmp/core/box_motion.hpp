@@ -97,7 +97,7 @@ class BoxMotion {
   struct Sample {
     std::int32_t tag;
     int index;
-    Vec4 x;
+    alignas(vec4_alignment) Vec4 x;
   };
   void take(const BoxChange &change, double time);
   bool carries(const State &state, const BoxChange &change) const;

@@ -36,7 +36,7 @@ class CellGrid {
     std::int64_t at[3];
   };
   struct alignas(64) Entry {
-    Vec4 point;
+    alignas(vec4_alignment) Vec4 point;
     std::uint64_t key;
     int index;
   };

@@ -18,6 +18,9 @@ namespace nscd {
 // Four doubles the compiler keeps in vector registers (two SSE2, one AVX).
 using Vec4 = double __attribute__((vector_size(32)));
 
+// Of members: AVX2 code (hot.hpp) takes all of them to lie like this, the baseline instruction set asks for 16 B.
+constexpr std::size_t vec4_alignment = 32;
+
 // {vx, vy, vz, 1/m}: velocity in m/s, inverse mass in 1/kg, 0 for an obstacle.
 using Body = Vec4;
 
@@ -26,7 +29,7 @@ using Body = Vec4;
 //     v = n.(v_i - v_j) + bias >= 0,  p >= 0,  v p = 0.
 // `bias` is what the scheme adds: e v_n^k (Newton's impact law) or gap/dt (law gap).
 struct alignas(64) Contact {
-  Vec4 normal;      // unit normal, fourth component 0 so that a body's inverse mass is left alone
+  alignas(vec4_alignment) Vec4 normal;   // unit, fourth component 0 so that a body's inverse mass is left alone
   double bias;      // m/s
   double w_inverse; // 1 / W_nn, W_nn = 1/m_i + 1/m_j, kg
   double impulse;   // N s

@@ -17,7 +17,7 @@ inline int wall_index(const Candidate &candidate) { return -1 - candidate.atom_j
 
 // n.x - offset is the height above the plane, m.
 struct Height {
-  Vec4 normal;
+  alignas(vec4_alignment) Vec4 normal;
   double offset;
   explicit Height(const Plane &plane) :
       normal{plane.normal[0], plane.normal[1], plane.normal[2], 0},

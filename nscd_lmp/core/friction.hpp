@@ -93,7 +93,7 @@ struct Planar {
 struct Spatial {
   using Tangent = Vec4;  // fourth component 0
   struct Slide {
-    Vec4 impulse;  // on body i, N s
+    alignas(vec4_alignment) Vec4 impulse;  // on body i, N s
     double bias[3];
     double mu;
   };

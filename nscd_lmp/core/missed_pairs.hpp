@@ -75,7 +75,7 @@ class MissedPairs {
   Motion motion_;
   Bounds since_;                     // of displacements since the list was built
   Bounds moving_, all_;              // with those of the motion, of moving grains and of all
-  Vec4 frame_{};                  // mean displacement of the motion, m
+  alignas(vec4_alignment) Vec4 frame_{};   // mean displacement of the motion, m
   std::vector<double> pace_;      // (bodies) how far the motion gets in that frame, m
   Profile profile_;
   CellGrid grid_;

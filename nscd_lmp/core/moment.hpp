@@ -18,7 +18,7 @@
 namespace nscd {
 
 struct Turned {
-  Vec4 normal;
+  alignas(vec4_alignment) Vec4 normal;
   double curve;   // m, <= 0: by how much the plane is nearer than the surface, at the start of the step
 };
 

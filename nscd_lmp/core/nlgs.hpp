@@ -89,7 +89,7 @@ NSCD_HOT Swept frictional_sweep(Problem &problem, const Range &range, [[maybe_un
   Vec4 *const spins = problem.sliding.spins;
   auto *const slides = problem.sliding.template slides<M>();
   const double response = problem.sliding.spin_response, ratio = 1 + response, ratio_inverse = 1 / ratio;
-  Vec4 corrected{};
+  alignas(vec4_alignment) Vec4 corrected{};
   double against = 0;
   for (std::size_t k = range.first; k < range.last; ++k) {
     Contact &c = problem.contacts[k];

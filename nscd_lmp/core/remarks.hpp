@@ -36,6 +36,7 @@ class Remarks {
   long impacts_left_ = 0;
   double overlap_ratio_ = 0;    // the largest
   double move_ratio_ = 0;       // the largest
+  double pushed_ = 0, passed2_ = 0;   // as a step reports them
   bool torque_ = false;
   bool told_of_torque_ = false;
 };

@@ -48,7 +48,7 @@ template <class M>
 NSCD_INLINE typename M::Tangent slip_at_start(const State &s, std::size_t k)
 {
   const Contact &c = s.contacts[k];
-  Vec4 difference{}, spins{};
+  alignas(vec4_alignment) Vec4 difference{}, spins{};
   for (const int b : {c.i, c.j}) {
     if (b >= s.moving()) continue;
     difference += start_velocity(s, b) * (b == c.i ? 1.0 : -1.0);

@@ -10,7 +10,8 @@ namespace nscd {
 
 // The smallest box that some displacements lie in, m.
 struct Bounds {
-  Vec4 lo{INFINITY, INFINITY, INFINITY, 0}, hi{-INFINITY, -INFINITY, -INFINITY, 0};
+  alignas(vec4_alignment) Vec4 lo{INFINITY, INFINITY, INFINITY, 0};
+  alignas(vec4_alignment) Vec4 hi{-INFINITY, -INFINITY, -INFINITY, 0};
 
   void include(const Vec4 &d)
   {

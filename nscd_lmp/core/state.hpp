@@ -17,8 +17,8 @@
 namespace nscd {
 
 // Centre and radius of an atom where contacts are sought; `reach` widens the search, 0 for law moreau.
-struct alignas(32) Sphere {
-  Vec4 centre;  // fourth component 0
+struct Sphere {
+  alignas(vec4_alignment) Vec4 centre;  // fourth component 0
   double radius;
   double reach;
 };

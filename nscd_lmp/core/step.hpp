@@ -33,6 +33,8 @@ struct StepReport {
   double largest_overlap = 0;        // m, at q_{k+1}
   double largest_overlap_ratio = 0;  // over the smaller radius of the pair
   double largest_move_ratio = 0;     // dt times the fastest grain's speed at the start, over the smallest radius
+  double pushed = 0;                 // N s, sum of the normal impulses between grains, in boxes that stand still
+  double passed2 = 0;                // N s, weighed by them: by how much of a diameter pairs pass each other, squared
   double dissipated_in_step = 0;     // J, by contacts
   double dissipated = 0;             // J, by contacts since begin_run
   long unconverged = 0;              // steps since begin_run

@@ -48,6 +48,7 @@ NSCD_HOT void Step::tally_contacts()
 {
   const State &s = state_;
   double overlap = 0, ratio = 0, work = tangential_work(s);
+  double pushed = 0, passed2 = 0;   // impulses, and how far their pairs pass each other, squared and weighed by them
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
     const Contact &c = s.contacts[k];
     ContactInfo &info = state_.infos[k];
@@ -63,6 +64,8 @@ NSCD_HOT void Step::tally_contacts()
       const Sphere &b = s.spheres[info.atom_j];
       separation -= b.centre + s.displacement[c.j];
       info.gap = std::sqrt(dot(separation, separation)) - a.radius - b.radius;
+      pushed += c.impulse;
+      passed2 += c.impulse * speed2(s.bodies[c.i] - s.bodies[c.j]) / (info.radius * info.radius);
     } else {
       info.gap += dot(c.normal, s.displacement[c.i]);
     }
@@ -76,7 +79,11 @@ NSCD_HOT void Step::tally_contacts()
   report_.largest_overlap_ratio = largest[1];
   if (!s.courses.start.empty()) work = work_on_grains(s);
   work -= 2 * calmed_.energy;
-  report_.dissipated_in_step = -0.5 * s.grains.square_to_energy * sum_everywhere(s, work);
+  double sums[] = {work, pushed, passed2};
+  if (halo_) halo_->sum(sums);
+  report_.dissipated_in_step = -0.5 * s.grains.square_to_energy * sums[0];
+  report_.pushed = sums[1];
+  report_.passed2 = 0.25 * s.dt * s.dt * sums[2];
   report_.dissipated += report_.dissipated_in_step;
 }
 

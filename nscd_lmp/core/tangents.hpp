@@ -10,7 +10,7 @@ int unknowns(Model model);
 
 // Two unit vectors with which the normal makes a right-handed frame. In the plane the first is (-n_y, n_x).
 struct Tangents {
-  Vec4 first, second;
+  alignas(vec4_alignment) Vec4 first, second;
 };
 Tangents tangents(const Vec4 &normal, Model model);
 

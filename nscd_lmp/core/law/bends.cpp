@@ -19,8 +19,8 @@ bool is_grain(const State &s, int body) { return s.bodies[body][3] > 0; }
 
 // How a pair lies and moves behind the impacts so far.
 struct Pair {
-  Vec4 separation;   // m, where its way comes from
-  Vec4 parting;      // m/s
+  alignas(vec4_alignment) Vec4 separation;   // m, where its way comes from
+  alignas(vec4_alignment) Vec4 parting;      // m/s
 };
 
 Pair pair_now(const State &s, std::size_t k)
