@@ -22,9 +22,7 @@ void Calm::find_islands(const State &s, std::size_t count)
     if (s.bodies[b][3] == 0) continue;
     Island &island = of_[islands_.of(b)];
     island.drive = std::max(island.drive, std::sqrt(speed2(start_velocity(s, b) + smooth_kick(s, b))));
-    if (b >= s.grains.owned) continue;   // counted by its owner
-    island.mass += 1 / s.bodies[b][3];
-    island.energy += 0.5 * speed2(s.bodies[b]) / s.bodies[b][3];
+    island.fastest = std::max(island.fastest, std::sqrt(speed2(s.bodies[b])));
   }
 }
 
@@ -40,11 +38,9 @@ void Calm::find_drives(const State &s, std::size_t count)
   }
   for (Island &island : of_) island.drive = std::max(island.drive, island.closing);
   if (!s.halo) return;
-  double sums[] = {of_[0].mass, of_[0].energy}, largest[] = {of_[0].drive, of_[0].closing};
-  s.halo->sum(sums);
+  double largest[] = {of_[0].drive, of_[0].closing, of_[0].fastest};
   s.halo->max(largest);
-  of_[0].mass = sums[0], of_[0].energy = sums[1];
-  of_[0].drive = largest[0], of_[0].closing = largest[1];
+  of_[0].drive = largest[0], of_[0].closing = largest[1], of_[0].fastest = largest[2];
 }
 
 // Jammed is an island in which a contact still approaches by a good part of what closes in.
@@ -67,10 +63,9 @@ double Calm::slow_down(State &s) const
   for (int b = 0; b < s.moving(); ++b) {
     if (s.bodies[b][3] == 0) continue;
     const Island &island = of_[islands_.of(b)];
-    const double most = 0.5 * island.mass * island.drive * island.drive;
-    if (!island.jammed || !(island.energy > most)) continue;
-    const double share2 = most / island.energy, share = std::sqrt(share2);
-    if (b < s.grains.owned) lost += 0.5 * speed2(s.bodies[b]) / s.bodies[b][3] * (1 - share2);
+    if (!island.jammed || !(island.fastest > island.drive)) continue;
+    const double share = island.drive / island.fastest;
+    if (b < s.grains.owned) lost += 0.5 * speed2(s.bodies[b]) / s.bodies[b][3] * (1 - share * share);
     s.bodies[b] *= Vec4{share, share, share, 1};
   }
   return lost;

@@ -1,9 +1,9 @@
 // Steps that are given up because nothing can give way: grains are not thrown.
 //
 // Where obstacles, a box or growing grains close in on grains that have nowhere to go, no impulses are a solution,
-// those that sweeps find grow without end, and so can velocities. An island of such a step keeps no more kinetic energy
-// than it would have if all of it moved as fast as what drives it: the fastest of its free grains, its obstacles and
-// its drift.
+// those that sweeps find grow without end, and so can velocities. No grain of an island of such a step is left faster
+// than what drives it: the fastest of its free grains, its obstacles and its drift. Its energy alone is no bound: given
+// to one grain it makes that faster step by step.
 #pragma once
 
 #include "islands.hpp"
@@ -24,7 +24,7 @@ class Calm {
 
  private:
   struct Island {
-    double mass = 0, energy = 0;   // kg, J
+    double fastest = 0;              // m/s, of its grains
     double drive = 0, closing = 0;   // m/s: of all that drives it, and of what is no grain
     bool jammed = false;
   };

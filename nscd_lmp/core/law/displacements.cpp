@@ -189,7 +189,7 @@ bool Displacements::turn_back_broken(State &s)
   return sum_everywhere(s, broken) > 0;
 }
 
-bool Displacements::fill(State &s)
+bool Displacements::fill(State &s, bool may_change)
 {
   start_half_way(s);
   add_shift(s);
@@ -208,7 +208,7 @@ bool Displacements::fill(State &s)
     const Vec4 &w = mean_[i];
     s.displacement[i] = Vec4{w[0], w[1], w[2], 0} * (way(s, i) == Way::stands ? 0.0 : s.dt);
   }
-  return drives && (s.courses.start.empty() ? turn_back_broken(s) : straighten_broken(s));
+  return drives && may_change && (s.courses.start.empty() ? turn_back_broken(s) : straighten_broken(s));
 }
 
 }    // namespace nscd
