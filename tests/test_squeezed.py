@@ -35,7 +35,7 @@ def squeezed(start: Any, seed: int) -> tuple[Any, int, list[Any]]:
 @BOTH
 @pytest.mark.parametrize("seed", [1, 2, 3, 7])
 def test_layer_that_a_lid_squeezes_is_not_thrown(start, door, seed):
-    # grains were as fast as 57,000 m/s, in steps that were called solved; 163 m/s in steps that were given up one by one
+    # grains were as fast as 57,000 m/s in steps that were called solved, 163 m/s over some that were given up
     lmp, n, walls = squeezed(start, seed)
     attached = harden(lmp, door, "layer", walls=walls, unconverged="ignore")
     lmp.command("run 750 post no")
