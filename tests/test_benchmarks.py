@@ -91,7 +91,8 @@ FILES = {
             "fraction",
             "fluctuation",
             "cpu_per_second",
-        }
+        },
+        "rough_incline.png": None,
     },
     "friction_accuracy": {
         "friction_accuracy.csv": {
