@@ -80,6 +80,16 @@ FOUND = {
         | {"masses": 806000.0, "layout": "apart", "speed": 1.0, "boundary": "p p p", "dt": 5e-3}
         | {"pushes": (Push(3, 0.01, (0, 0, 1)), Push(3, 0.01, (0, -1, 1)))},
     ),
+    # what is jammed in a box that closes in was slowed down as if something held it
+    "jammed across a face": Scene(
+        n=36,
+        seed=129,
+        room="dense",
+        e=0.0,
+        **COLUMNS
+        | {"layout": "overlapping", "masses": 649000.0, "speed": 0.0, "boundary": "p p p", "deforms": "none"}
+        | {"mu": 1.0, "law": "moreau", "dt": 1e-4, "steps": 3},
+    ),
     # an image moves with two edges of the box
     "corner of a sheared box": Scene(
         n=10,

@@ -50,20 +50,12 @@ def endless() -> Any:
     return lmp, {"restitution": 1.0, "walls": [FLOOR]}
 
 
-def sliding() -> Any:
-    """A ball that slides over a fixed one by 0.025 of a diameter a step, and stays on it."""
-    lmp = start(grains([(0, 0, 0), (0, 0, 2 * R)], R, v=[(0, 0, 0), (0.25, 0, 0)]), 2e-3, gravity=GRAVITY, vmax=2)
-    lmp.command("group free id 2")
-    return lmp, {"group": "free"}
-
-
 TOLD = {
     misjudged: r"1 of 1 steps met tol 1e-07 of criterion \(42\) with velocities that are off by up to 1\.5 .*natural",
     overlapping: r"grains overlap by up to 0\.02 of the smaller radius: use law gap or a smaller timestep",
     overlapping_start: r"grains overlap by up to 0\.05 of the smaller radius: start without overlap, lower tol, or",
     passing: r"grains move by up to 3 of the smallest radius in a step, and law moreau does not see them pass",
     endless: r"in 1 of 1 steps more impacts followed each other than law gap takes one after another, and the rest",
-    sliding: r"grains that push each other pass each other by 0\.025 of a diameter a step, .* 1\.4 times smaller where",
     unsolved: r"1 of 1 steps were given up above tol 1e-12, and .* smaller timestep, or raise maxiter \(now 1\) or tol",
 }
 
@@ -111,6 +103,25 @@ def test_what_is_given_up_is_told_by_the_island_that_is_off(run, door):
     (told,) = run(column_beside_press, door, ["run 1"])
     off = re.search(r"given up above tol 0\.001 .*off by up to (\S+) of what", told)
     assert off and float(off[1]) > 1e-2, told
+
+
+def circling() -> Any:
+    """A ball that a spring presses on a fixed one, which it slides round by 0.025 of a diameter a step."""
+    lmp = start(grains([(0, 0, 0), (0, 0, 2 * R)], R, v=[(0, 0, 0), (0.25, 0, 0)]), 2e-3, vmax=2)
+    pull = 500 * float(lmp.numpy.extract_atom("rmass")[0])
+    lmp.commands_list(["group free id 2", f"fix pull free spring tether {pull!r} 0 0 0 0"])
+    return lmp, {"group": "free"}
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_a_flow_with_too_large_a_step_is_told(run, door):
+    (told,) = run(circling, door, ["run 120"])
+    said = re.search(
+        r"in 120 of 120 steps grains .* by more than 0\.018 of a diameter, by (\S+) in the mean, .* slow", told
+    )
+    assert said and float(said[1]) == pytest.approx(0.026, rel=0.1), told
+    assert run(circling, door, ["run 90"]) == []  # it has to last
+    assert run(circling, door, ["run 120"], restitution=0.5) == []
 
 
 @pytest.mark.parametrize("door", DOORS)

@@ -3,7 +3,7 @@
 // Where obstacles, a box or growing grains close in on grains that have nowhere to go, no impulses are a solution,
 // those that sweeps find grow without end, and so can velocities. No grain of an island of such a step is left faster
 // than what drives it: the fastest of its free grains, its obstacles and its drift. Its energy alone is no bound: given
-// to one grain it makes that faster step by step.
+// to one grain it makes that faster step by step. Where no obstacle takes part the island keeps its momentum.
 #pragma once
 
 #include "islands.hpp"
@@ -24,18 +24,27 @@ class Calm {
 
  private:
   struct Island {
-    double fastest = 0;              // m/s, of its grains
     double drive = 0, closing = 0;   // m/s: of all that drives it, and of what is no grain
-    bool jammed = false;
+    int jam = -1;                    // its number, or none
+    bool held = false;               // whether obstacles or walls take part
+  };
+  struct Jam {
+    alignas(vec4_alignment) Vec4 motion{};   // momentum, N s; then the velocity that it keeps, m/s
+    double mass = 0;                         // kg
+    double fastest = 0;                      // m/s, of its grains beside that
   };
   void find_islands(const State &state, std::size_t count);
   void find_drives(const State &state, std::size_t count);
   void find_jams(const State &state, std::size_t count);
+  void find_motions(const State &state);
+  void find_fastest(const State &state);
   double slow_down(State &state) const;
+  Island &of_contact(const State &state, const Contact &contact);
 
   Islands islands_;
   std::vector<Islands::Pair> joined_;
   std::vector<Island> of_;
+  std::vector<Jam> jams_;
 };
 
 }    // namespace nscd

@@ -15,8 +15,10 @@ constexpr double overlap_worth_saying = 0.01;
 constexpr double move_worth_saying = 2;
 
 // How far pairs that push each other pass each other in a step, over their diameter, root of the mean square. On a
-// rough incline of 12 layers 0.013 is no slower than less, 0.025 is slower by some 15 % (docs/how_large_a_step.md).
+// rough incline of 12 layers 0.013 is no slower than less, 0.025 is slower by some 15 % (docs/how_large_a_step.md). It
+// has to last: grains that land pass each other by more for a while.
 constexpr double passing_worth_saying = 0.018;
+constexpr long steps_of_a_flow = 100;
 
 template <class... Parts>
 std::string sentence(const Parts &...parts)
@@ -47,6 +49,14 @@ std::string told_unconverged(const Settings &s, long unconverged, long steps, do
                   s.overlap ? "), tol or overlap" : ") or tol");
 }
 
+std::string told_passing(long passing, long steps, double by)
+{
+  return sentence("in ", passing, " of ", steps, " steps grains that push each other pass each other by more than ",
+                  passing_worth_saying, " of a diameter, by ", rounded(by), " in the mean, and a flow comes out too ",
+                  "slow by 10 % and more: use a timestep ", rounded(by / passing_worth_saying), " times smaller where ",
+                  "that matters");
+}
+
 }    // namespace
 
 void Remarks::add(const StepReport &r, Stop stop)
@@ -64,8 +74,11 @@ void Remarks::add(const StepReport &r, Stop stop)
   impacts_left_ += r.impacts_left;
   overlap_ratio_ = std::max(overlap_ratio_, r.largest_overlap_ratio);
   move_ratio_ = std::max(move_ratio_, r.largest_move_ratio);
-  pushed_ += r.pushed;
-  passed2_ += r.passed2;
+  if (r.passed2 > passing_worth_saying * passing_worth_saying * r.pushed) {
+    ++passing_;
+    pushed_ += r.pushed;
+    passed2_ += r.passed2;
+  }
   torque_ = torque_ || r.unread_torque;
 }
 
@@ -90,12 +103,8 @@ std::vector<std::string> Remarks::take(const Settings &s, bool looks_ahead)
   if (!looks_ahead && move_ratio_ > move_worth_saying)
     said.push_back(sentence("grains move by up to ", rounded(move_ratio_), " of the smallest radius in a step, and ",
                             "law ", s.law, " does not see them pass each other: use law gap or a smaller timestep"));
-  const double passing = pushed_ > 0 ? std::sqrt(passed2_ / pushed_) : 0;
-  if (looks_ahead && s.restitution == 0 && passing > passing_worth_saying)
-    said.push_back(sentence("grains that push each other pass each other by ", rounded(passing), " of a diameter a ",
-                            "step, and from ", passing_worth_saying, " on flows come out too slow by 10 % and more: ",
-                            "use a timestep ", rounded(passing / passing_worth_saying),
-                            " times smaller where that matters"));
+  if (looks_ahead && s.restitution == 0 && passing_ > std::max(steps_of_a_flow, steps_ / 2))
+    said.push_back(told_passing(passing_, steps_, std::sqrt(passed2_ / pushed_)));
   if (torque_)
     said.push_back("torques act on grains without friction, which have no spins: give the fix a friction (0.0001 will "
                    "do where its own contacts are to have none), or leave out what makes them");

@@ -36,7 +36,8 @@ class Remarks {
   long impacts_left_ = 0;
   double overlap_ratio_ = 0;    // the largest
   double move_ratio_ = 0;       // the largest
-  double pushed_ = 0, passed2_ = 0;   // as a step reports them
+  long passing_ = 0;            // steps with more than passing_worth_saying
+  double pushed_ = 0, passed2_ = 0;   // in these, as a step reports them
   bool torque_ = false;
   bool told_of_torque_ = false;
 };
