@@ -160,7 +160,7 @@ def parsed(words: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--stiffnesses", nargs="*", type=float, default=STIFFNESSES, help="N/m, of springs")
     parser.add_argument("--seeds", nargs="*", type=int, default=(1, 2))
     parser.add_argument("--seconds", type=float, default=2.0, help="of every run; its second half counts")
-    parser.add_argument("--output", type=Path, default=Path())
+    parser.add_argument("--output", type=Path, default=Path("output/benchmarks"), help="folder [%(default)s]")
     parser.add_argument("--draw", type=Path, nargs="+", metavar="CSV", help="rows to draw in place of a run")
     parser.add_argument("--quick", action="store_true", help="a few steps, to see that it runs")
     asked = parser.parse_args(words)

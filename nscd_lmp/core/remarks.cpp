@@ -15,7 +15,7 @@ constexpr double overlap_worth_saying = 0.01;
 constexpr double move_worth_saying = 2;
 
 // How far pairs that push each other pass each other in a step, over their diameter, root of the mean square. On a
-// rough incline of 12 layers 0.013 is no slower than less, 0.025 is slower by some 15 % (docs/how_large_a_step.md). It
+// rough incline of 12 layers 0.013 is no slower than less, 0.025 is slower by some 10 % (docs/how_large_a_step.md). It
 // has to last: grains that land pass each other by more for a while.
 constexpr double passing_worth_saying = 0.018;
 constexpr long steps_of_a_flow = 100;
