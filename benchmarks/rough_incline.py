@@ -196,6 +196,7 @@ def draw(rows: Sequence[dict[str, Any]], path: Path) -> None:
     title = "beside points: dt sqrt(g/d) or stiffness, number of flows"
     figure.legend(handles=handles, title=title, loc="outside lower center", ncols=len(handles))
     figure.suptitle("A rough incline of 24 degrees, 1200 grains, friction 0.5")
+    path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=120)
     plt.close(figure)
     print(f"wrote {path}")

@@ -20,7 +20,8 @@ class Displacements {
  public:
   // Fills state.displacement from the velocities in state.bodies. Returns whether pairs are driven into overlap since
   // they have not gone where their planes were taken, and the step has to be solved on: with planes of the start of the
-  // step or, where courses relied on what contacts stop, with those of straight courses. Collective.
+  // step or, where courses relied on what contacts stop, with those of straight courses. Not unless `may_change`.
+  // Collective.
   bool fill(State &state, bool may_change);
 
  private:
