@@ -101,12 +101,14 @@ void Calm::find_fastest(const State &s)
 }
 
 // Returns the energy that this rank's grains have lost, J.
-double Calm::slow_down(State &s) const
+double Calm::slow_down(State &s)
 {
   double lost = 0;
+  jammed_.assign(s.moving(), 0);
   for (int b = 0; b < s.moving(); ++b) {
     const Island *island = s.bodies[b][3] > 0 ? &of_[islands_.of(b)] : nullptr;
     if (!island || island->jam < 0) continue;
+    jammed_[b] = 1;
     const Jam &jam = jams_[island->jam];
     if (!(jam.fastest > island->drive)) continue;
     const double before2 = speed2(s.bodies[b]), share = island->drive / jam.fastest;
@@ -124,7 +126,8 @@ Calm::Found Calm::slow_down(State &s, std::size_t count)
   if (jams_.empty()) return {};
   find_motions(s);
   find_fastest(s);
-  return {true, slow_down(s)};
+  const double energy = slow_down(s);
+  return {true, energy, jammed_};
 }
 
 }    // namespace nscd

@@ -9,6 +9,7 @@
 #include "islands.hpp"
 #include "state.hpp"
 
+#include <span>
 #include <vector>
 
 namespace nscd {
@@ -18,6 +19,7 @@ class Calm {
   struct Found {
     bool jammed = false;   // obstacles or what drifts close in on grains, pushing far harder than that is worth
     double energy = 0;     // kinetic energy taken, J; of this rank
+    std::span<const char> bodies{};   // (moving()) 1: in a jammed island; or empty. Until the next call
   };
   // Slows down the jammed islands of the first `count` contacts that are faster than that. Collective.
   Found slow_down(State &state, std::size_t count);
@@ -38,13 +40,14 @@ class Calm {
   void find_jams(const State &state, std::size_t count);
   void find_motions(const State &state);
   void find_fastest(const State &state);
-  double slow_down(State &state) const;
+  double slow_down(State &state);
   Island &of_contact(const State &state, const Contact &contact);
 
   Islands islands_;
   std::vector<Islands::Pair> joined_;
   std::vector<Island> of_;
   std::vector<Jam> jams_;
+  std::vector<char> jammed_;   // bodies
 };
 
 }    // namespace nscd

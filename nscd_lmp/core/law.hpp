@@ -34,8 +34,9 @@ class Law {
   // The same of the tangential biases, which are e_t times the tangential velocity at the start of the step.
   virtual double tangential_restitution_in_bias(const Settings &) const { return 0; }
   // Fills state.displacement, from where contacts were sought to q_{k+1}; bodies have v_{k+1}. Returns whether the
-  // step has to be solved again, with what the law has changed, if it may; the same on all ranks.
-  virtual bool displace(State &, bool may_change) = 0;
+  // step has to be solved again, with what the law has changed; the same on all ranks. `jammed`: of the moving bodies,
+  // or empty; contacts of these have no solution, and nothing is changed for them.
+  virtual bool displace(State &, std::span<const char> jammed) = 0;
 };
 
 struct LawEntry {

@@ -184,7 +184,7 @@ static void check_overlap(const Settings &s)
 {
   if (!s.overlap) return;
   if (!(*s.overlap > 0 && *s.overlap <= 1))
-    fail("overlap = ", *s.overlap, " is outside (0, 1]: it is a share of the smallest radius");
+    fail("overlap = ", *s.overlap, " is outside (0, 1]: it is a share of the smaller radius of a contact");
   if (!find_law(s.law).make()->looks_ahead())
     fail("overlap is a condition of law gap: law ", s.law, " sees contacts only once they overlap");
 }

@@ -72,7 +72,7 @@ void Step::solve()
     if (!briefly) solve_within_energy(part, EnergyLimit::From::step);
     calmed_ = !briefly && !report_.converged ? calm_.slow_down(state_, part.contacts) : Calm::Found{};
     if (halo_) halo_->refresh(state_);
-    differently = law_->displace(state_, !calmed_.jammed);   // what is jammed has no solution with other planes either
+    differently = law_->displace(state_, calmed_.bodies);
     first = state_.contacts.size();
     grows = promote() || differently;
     sweeps *= 2;

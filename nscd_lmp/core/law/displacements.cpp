@@ -159,14 +159,19 @@ static bool has_left_plane(const State &s, std::size_t k)
   return end < -*s.settings.overlap * info.radius && end < info.gap;
 }
 
+static bool is_jammed(const State &s, std::size_t k, std::span<const char> jammed)
+{
+  return !jammed.empty() && jammed[grain_of(s.contacts[k], s.bodies.data())] != 0;
+}
+
 // Contacts that overlap since a course comes from beyond their surface.
-bool Displacements::straighten_broken(State &s)
+bool Displacements::straighten_broken(State &s, std::span<const char> jammed)
 {
   std::vector<char> &straight = s.courses.straight;
   before_ = straight;
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
     const Contact &c = s.contacts[k];
-    if (is_open(s, k, rate(s, k))) continue;
+    if (is_open(s, k, rate(s, k)) || is_jammed(s, k, jammed)) continue;
     const bool relied = put_apart(s, c) < 0 && rate(s, k) < 0;
     if (!relied && !has_left_plane(s, k)) continue;
     for (const int b : {c.i, c.j}) straight[b] = s.bodies[b][3] > 0;
@@ -175,13 +180,13 @@ bool Displacements::straighten_broken(State &s)
   return sum_everywhere(s, double(straight != before_)) > 0;
 }
 
-bool Displacements::turn_back_broken(State &s)
+bool Displacements::turn_back_broken(State &s, std::span<const char> jammed)
 {
   double broken = 0;
   find_suspects(s);
   change_across(s.halo, s.bodies, s.friction.spins.data(), [&] {
     for (const std::uint32_t k : suspects_) {
-      if (!has_left_plane(s, k)) continue;
+      if (!has_left_plane(s, k) || is_jammed(s, k, jammed)) continue;
       turn_back(s, k);
       ++broken;
     }
@@ -189,7 +194,7 @@ bool Displacements::turn_back_broken(State &s)
   return sum_everywhere(s, broken) > 0;
 }
 
-bool Displacements::fill(State &s, bool may_change)
+bool Displacements::fill(State &s, std::span<const char> jammed)
 {
   start_half_way(s);
   add_shift(s);
@@ -208,7 +213,7 @@ bool Displacements::fill(State &s, bool may_change)
     const Vec4 &w = mean_[i];
     s.displacement[i] = Vec4{w[0], w[1], w[2], 0} * (way(s, i) == Way::stands ? 0.0 : s.dt);
   }
-  return drives && may_change && (s.courses.start.empty() ? turn_back_broken(s) : straighten_broken(s));
+  return drives && (s.courses.start.empty() ? turn_back_broken(s, jammed) : straighten_broken(s, jammed));
 }
 
 }    // namespace nscd

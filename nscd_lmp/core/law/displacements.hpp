@@ -20,9 +20,9 @@ class Displacements {
  public:
   // Fills state.displacement from the velocities in state.bodies. Returns whether pairs are driven into overlap since
   // they have not gone where their planes were taken, and the step has to be solved on: with planes of the start of the
-  // step or, where courses relied on what contacts stop, with those of straight courses. Not unless `may_change`.
-  // Collective.
-  bool fill(State &state, bool may_change);
+  // step or, where courses relied on what contacts stop, with those of straight courses. Not for
+  // `jammed` ones, as Law::displace has it. Collective.
+  bool fill(State &state, std::span<const char> jammed);
 
  private:
   NSCD_INLINE double rate(const State &s, std::size_t k) const;
@@ -35,8 +35,8 @@ class Displacements {
   bool open_suspects(const State &s);
   void find_neighbors(const State &s);
   void open_contacts(const State &s);
-  bool straighten_broken(State &s);
-  bool turn_back_broken(State &s);
+  bool straighten_broken(State &s, std::span<const char> jammed);
+  bool turn_back_broken(State &s, std::span<const char> jammed);
 
   AlignedVector<Vec4> mean_;      // per body: mean velocity of its way
   std::vector<char> before_;      // what was straight

@@ -58,7 +58,7 @@ class Gap final : public Law {
   }
   bool impacts(State &s, const SolvePart &solve) override { return resolve_impacts(s, bends_, solve); }
   void set_bias(State &s, std::size_t first) override { set_biases(s, first); }
-  bool displace(State &s, bool may_change) override { return displacements_.fill(s, may_change); }
+  bool displace(State &s, std::span<const char> jammed) override { return displacements_.fill(s, jammed); }
 
  private:
   Displacements displacements_;

@@ -34,7 +34,7 @@ class Moreau final : public Law {
       s.contacts[k].bias = e * s.infos[k].speed_before + normal_drift(s, k);
   }
 
-  bool displace(State &s, bool) override
+  bool displace(State &s, std::span<const char>) override
   {
     const double step = s.settings.theta * s.dt;
     for (int i = 0; i < s.moving(); ++i) {
