@@ -26,6 +26,8 @@ export_only(fix_nscd nscd_register_fix)
 
 add_library(nscdplugin MODULE nscd_lmp/plugin/plugin.cpp)
 target_compile_definitions(nscdplugin PRIVATE NSCD_LAMMPS_VERSION=${lammps_number})
+# For the columns of a report (progress.hpp); it links nothing of the core.
+target_include_directories(nscdplugin PRIVATE nscd_lmp/core)
 target_link_libraries(nscdplugin PRIVATE ${CMAKE_DL_LIBS})
 export_only(nscdplugin "lammpsplugin_init; nscd_progress")
 

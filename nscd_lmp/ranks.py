@@ -14,7 +14,7 @@ Letter = tuple[int, Numbers]
 
 
 class Ranks:
-    """Sums, maxima and messages over the ranks of a communicator; core/ranks.hpp says what each does.
+    """Sums, maxima and messages over the ranks of a communicator; core/parallel/ranks.hpp says what each does.
 
     Parameters
     ----------

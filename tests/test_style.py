@@ -53,7 +53,7 @@ def test_lines_of_cpp_files_have_120_characters_at_most() -> None:
 
 
 def hot_functions() -> dict[str, str]:
-    """Return the bodies of the functions that are compiled for several processors (core/hot.hpp), by their place."""
+    """Return the bodies of the functions that are compiled for several processors (base/hot.hpp), by place."""
     bodies = {}
     for path in sorted((ROOT / "nscd_lmp").rglob("*.[ch]pp")):
         for part in re.split(r"\bNSCD_HOT\b(?! __attr)", path.read_text())[1:]:

@@ -2,9 +2,9 @@
 
 #include "arrays.hpp"
 
-#include "../core/bonded.hpp"
-#include "../core/doubts.hpp"
-#include "../core/error.hpp"
+#include "base/error.hpp"
+#include "scene/bonded.hpp"
+#include "scene/doubts.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 // The Python door: a whole step inside `fix external` or `fix python/invoke`, on LAMMPS' own arrays.
 #pragma once
 
-#include "../core/report.hpp"
-#include "../core/periodic_walls.hpp"
-#include "../core/step.hpp"
 #include "library.hpp"
 #include "list_reach.hpp"
+#include "obstacle/periodic_walls.hpp"
 #include "python_ranks.hpp"
+#include "step/report.hpp"
+#include "step/step.hpp"
 
 #include <nanobind/nanobind.h>
 

@@ -1,6 +1,6 @@
 #include "grain_arrays.hpp"
 
-#include "../core/state.hpp"
+#include "scene/state.hpp"
 
 #include <algorithm>
 #include <cmath>

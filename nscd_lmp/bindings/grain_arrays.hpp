@@ -1,7 +1,7 @@
 // A contact problem of grains, made from arrays instead of a step.
 #pragma once
 
-#include "../core/problem.hpp"
+#include "problem/problem.hpp"
 
 #include <vector>
 

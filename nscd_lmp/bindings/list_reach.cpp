@@ -1,7 +1,7 @@
 #include "list_reach.hpp"
 
-#include "../core/error.hpp"
-#include "../core/list_audit.hpp"
+#include "base/error.hpp"
+#include "scene/list_audit.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // How far the neighbor list of a LAMMPS reaches whose C interface does not tell the cutoffs of pairs of types.
 #pragma once
 
-#include "../core/ranks.hpp"
-#include "../core/views.hpp"
+#include "parallel/ranks.hpp"
+#include "scene/views.hpp"
 
 #include <string>
 #include <vector>

@@ -1,9 +1,9 @@
 // nscd_lmp._core: the core for Python.
-#include "../core/error.hpp"
-#include "../core/slides.hpp"
 #include "arrays.hpp"
+#include "base/error.hpp"
 #include "external_fix.hpp"
 #include "problems.hpp"
+#include "scene/slides.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>

@@ -1,9 +1,9 @@
 #include "problems.hpp"
 
-#include "../core/solver.hpp"
-#include "../core/settings.hpp"
 #include "arrays.hpp"
 #include "grain_arrays.hpp"
+#include "settings/settings.hpp"
+#include "solver/solver.hpp"
 
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>

@@ -1,7 +1,7 @@
 // The ranks of a LAMMPS run, by a Python object: nscd_lmp.ranks.Ranks on mpi4py.
 #pragma once
 
-#include "../core/ranks.hpp"
+#include "parallel/ranks.hpp"
 
 #include <nanobind/nanobind.h>
 

@@ -1,9 +1,9 @@
 #include "fix_nscd.hpp"
 
-#include "../core/doubts.hpp"
-#include "../core/error.hpp"
+#include "base/error.hpp"
 #include "contact_list.hpp"
 #include "progress.hpp"
+#include "scene/doubts.hpp"
 
 #include <atom.h>
 #include <comm.h>

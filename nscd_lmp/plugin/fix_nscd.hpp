@@ -1,11 +1,11 @@
 // fix nscd: the script door. LAMMPS arrays in, velocities out; no numerics.
 #pragma once
 
-#include "../core/report.hpp"
-#include "../core/step.hpp"
 #include "mpi_ranks.hpp"
 #include "restart.hpp"
 #include "scene_checks.hpp"
+#include "step/report.hpp"
+#include "step/step.hpp"
 
 #include <fix.h>
 

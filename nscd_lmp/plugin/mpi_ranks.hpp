@@ -1,7 +1,7 @@
 // The ranks of a LAMMPS run, by MPI.
 #pragma once
 
-#include "../core/ranks.hpp"
+#include "parallel/ranks.hpp"
 
 #include <mpi.h>
 

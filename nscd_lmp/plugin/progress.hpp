@@ -5,7 +5,7 @@
 // may be read, or set to 0 between runs, from any thread; the fixes nscd are the only other writers.
 #pragma once
 
-#include "../core/report.hpp"
+#include "step/report.hpp"
 
 #include <atomic>
 

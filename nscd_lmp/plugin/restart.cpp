@@ -1,6 +1,6 @@
 #include "restart.hpp"
 
-#include "../core/tangents.hpp"
+#include "contact/tangents.hpp"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 // whatever ranks read the grains.
 #pragma once
 
-#include "../core/step.hpp"
+#include "step/step.hpp"
 
 #include <cstdint>
 #include <map>

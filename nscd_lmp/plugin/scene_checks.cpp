@@ -1,8 +1,8 @@
 #include "scene_checks.hpp"
 
-#include "../core/bonded.hpp"
-#include "../core/error.hpp"
-#include "../core/periodic_walls.hpp"
+#include "base/error.hpp"
+#include "obstacle/periodic_walls.hpp"
+#include "scene/bonded.hpp"
 
 #include <atom.h>
 #include <comm.h>

@@ -1,9 +1,9 @@
 // What fix nscd asks of the scene beside the contacts: round atoms, no second integrator, walls that fit the box.
 #pragma once
 
-#include "../core/settings.hpp"
-#include "../core/views.hpp"
 #include "mpi_ranks.hpp"
+#include "scene/views.hpp"
+#include "settings/settings.hpp"
 
 #include <pointers.h>
 

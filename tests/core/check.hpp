@@ -1,7 +1,7 @@
 // All of the test framework: TEST registers a function, the CHECKs count what is wrong, check.cpp has main.
 #pragma once
 
-#include "core/error.hpp"
+#include "base/error.hpp"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 // Grains and a pair list made by hand, as LAMMPS would hand them to the core.
 #pragma once
 
-#include "core/step.hpp"
+#include "step/step.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,7 +1,7 @@
 // The active set method where the plain one ends wrongly or not at all, and what it says where there is no solution.
 #include "check.hpp"
-#include "core/solver.hpp"
 #include "scene.hpp"
+#include "solver/solver.hpp"
 
 #include <cmath>
 #include <limits>

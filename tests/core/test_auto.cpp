@@ -1,6 +1,6 @@
 // What solver auto hands to whom: grains and matrices alike, the same bits every time.
 #include "check.hpp"
-#include "core/delassus.hpp"
+#include "problem/delassus.hpp"
 #include "scene.hpp"
 
 #include <cmath>

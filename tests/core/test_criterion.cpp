@@ -1,7 +1,7 @@
 // Criterion (42) and the relative residual against values worked out by hand.
 #include "check.hpp"
-#include "core/criterion.hpp"
-#include "core/settings.hpp"
+#include "problem/criterion.hpp"
+#include "settings/settings.hpp"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // Delassus matrices of grains, and solvers on them against the same solvers on the bodies.
 #include "check.hpp"
-#include "core/delassus.hpp"
-#include "core/tangents.hpp"
+#include "contact/tangents.hpp"
+#include "problem/delassus.hpp"
 #include "scene.hpp"
 
 #include <cmath>

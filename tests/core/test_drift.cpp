@@ -1,7 +1,7 @@
 // What a contact's velocity has besides its bodies': radii that grow, images and grains that move with the box.
 #include "check.hpp"
-#include "core/box_motion.hpp"
 #include "scene.hpp"
+#include "scene/box_motion.hpp"
 
 #include <cmath>
 

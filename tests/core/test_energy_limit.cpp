@@ -1,7 +1,7 @@
 // Newton's law of impact with friction can make energy when e != e_t; a step must not.
 #include "check.hpp"
-#include "core/slides.hpp"
 #include "scene.hpp"
+#include "scene/slides.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Scenes without anything, and scenes with a lot of it.
 #include "check.hpp"
-#include "core/report.hpp"
 #include "scene.hpp"
+#include "step/report.hpp"
 
 #include <ctime>
 #include <cmath>

@@ -1,8 +1,8 @@
 // Operations on contacts with friction, against formulas with radii and angular velocities, and the conservation laws.
 #include "check.hpp"
-#include "core/slides.hpp"
-#include "core/solver.hpp"
 #include "scene.hpp"
+#include "scene/slides.hpp"
+#include "solver/solver.hpp"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // Law gap on scenes small enough to be worked out by hand.
 #include "check.hpp"
-#include "core/report.hpp"
 #include "scene.hpp"
+#include "step/report.hpp"
 
 #include <cmath>
 

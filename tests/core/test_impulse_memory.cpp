@@ -1,5 +1,5 @@
 #include "check.hpp"
-#include "core/impulse_memory.hpp"
+#include "warm_start/impulse_memory.hpp"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 // Interior points on random problems: against sweeps, against the active set, and where there is nothing to find.
 #include "check.hpp"
-#include "core/solver.hpp"
 #include "scene.hpp"
+#include "solver/solver.hpp"
 
 #include <algorithm>
 #include <cmath>

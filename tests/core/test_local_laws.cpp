@@ -1,6 +1,6 @@
 // Every local law of the registry on one contact, where all can be worked out by hand.
 #include "check.hpp"
-#include "core/solver.hpp"
+#include "solver/solver.hpp"
 
 #include <cmath>
 

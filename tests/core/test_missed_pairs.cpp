@@ -1,7 +1,7 @@
 // Pairs that the neighbor list lacks: judged by their own approach, and found where a solve drives them together.
 #include "check.hpp"
-#include "core/cell_grid.hpp"
 #include "scene.hpp"
+#include "scene/cell_grid.hpp"
 #include "thread_ranks.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-// The plane of a pair that has moved on (core/moment.hpp).
+// The plane of a pair that has moved on (core/contact/moment.hpp).
 #include "check.hpp"
-#include "core/moment.hpp"
+#include "contact/moment.hpp"
 #include "scene.hpp"
 
 #include <cmath>

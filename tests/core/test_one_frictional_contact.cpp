@@ -1,8 +1,8 @@
 // One contact with friction, where the solution is known in closed form: every law of the registry on thousands of
 // random problems.
 #include "check.hpp"
-#include "core/solver.hpp"
 #include "scene.hpp"
+#include "solver/solver.hpp"
 
 #include <cmath>
 #include <cstdio>

@@ -1,8 +1,8 @@
 // Planar scenes (`dimension 2`), spins in and out of the arrays, and obstacles that drive grains.
 #include "check.hpp"
-#include "core/report.hpp"
-#include "core/slides.hpp"
 #include "scene.hpp"
+#include "scene/slides.hpp"
+#include "step/report.hpp"
 
 #include <cmath>
 #include <functional>

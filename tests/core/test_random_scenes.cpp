@@ -1,8 +1,8 @@
 // Random crowded scenes for every law and solver: whatever comes, a step either keeps what it promises or
 // refuses and leaves the arrays alone. Most of its worth is under sanitizers.
 #include "check.hpp"
-#include "core/slides.hpp"
 #include "scene.hpp"
+#include "scene/slides.hpp"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #include "check.hpp"
-#include "core/law.hpp"
-#include "core/solver.hpp"
+#include "scheme/law.hpp"
+#include "solver/solver.hpp"
 
 #include <cmath>
 

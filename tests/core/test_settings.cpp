@@ -1,6 +1,6 @@
 #include "check.hpp"
-#include "core/report.hpp"
 #include "scene.hpp"
+#include "step/report.hpp"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
 // The two stopping rules of a step: criterion (42) in m/s, and the natural map relative to the free velocities.
 #include "check.hpp"
-#include "core/iterate.hpp"
-#include "core/step.hpp"
 #include "scene.hpp"
+#include "solver/iterate.hpp"
+#include "step/step.hpp"
 
 #include <algorithm>
 #include <string>

@@ -1,7 +1,7 @@
 // Tangential impulses in space stay perpendicular to their normals, however long a law takes.
 #include "check.hpp"
-#include "core/slides.hpp"
 #include "scene.hpp"
+#include "scene/slides.hpp"
 
 #include <algorithm>
 #include <cmath>

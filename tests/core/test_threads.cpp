@@ -1,7 +1,7 @@
 // Threads of a rank: parts that are swept at the same time share no body, and any number of threads gives the
 // velocities of one. Worth most under the thread sanitizer.
 #include "check.hpp"
-#include "core/team.hpp"
+#include "parallel/team.hpp"
 #include "scene.hpp"
 
 #include <cmath>

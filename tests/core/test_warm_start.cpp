@@ -1,8 +1,8 @@
 // Warm start under friction: impulses turn with their contact, whichever grain is named first.
 #include "check.hpp"
-#include "core/slides.hpp"
-#include "core/warm_start.hpp"
 #include "scene.hpp"
+#include "scene/slides.hpp"
+#include "warm_start/warm_start.hpp"
 
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // Ranks that are threads of one program: what the halo exchanges, without MPI.
 #pragma once
 
-#include "core/ranks.hpp"
+#include "parallel/ranks.hpp"
 
 #include <barrier>
 #include <functional>

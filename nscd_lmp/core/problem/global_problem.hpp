@@ -1,0 +1,42 @@
+// The contact problem of all contacts at once, by its Delassus matrix: find p with u = W p + q and
+//   0 <= u_n _|_ p_n >= 0,  |p_t| <= mu p_n,  p_t = -mu p_n u_t / |u_t| where u_t != 0.
+//
+// Whoever has no bodies (nscd_lmp.solve on a matrix) poses it directly; solvers that look at all contacts at once get
+// it made from the bodies (delassus.hpp). Vectors are laid out contact by contact, N, T1[, T2].
+#pragma once
+
+#include "problem/block_matrix.hpp"
+
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace nscd {
+
+// A contact's own block of W as local laws see it: diag(w, wt[, wt]) >= the block, equal for spheres and discs.
+struct Diagonal {
+  double w = 0, wt = 0;  // 1/kg; 0: nothing that an impulse could move
+  bool exact = true;     // whether it is the block
+};
+
+struct GlobalProblem {
+  const BlockMatrix &w;            // 1/kg
+  std::span<const double> q;       // (n, dim) velocities without impulses, biases included, m/s
+  std::span<const double> mu;      // (n) Coulomb's coefficients, infinite for stick; empty if dim = 1
+  std::span<double> p;             // (n, dim) in: start impulses; out: solution, N s
+  double restitution = 0;          // that q contains: scales v in the criterion, as in Problem
+  double restitution_t = 0;
+  std::vector<Diagonal> diagonals{};  // (n), by find_diagonals()
+  std::span<const double> per_approach{};   // (n) as Problem has it, or empty: any
+
+  int dim() const { return w.dim; }
+  std::size_t contacts() const { return w.rows(); }
+  double friction(std::size_t k) const { return mu.empty() ? 0.0 : mu[k]; }
+};
+
+void find_diagonals(GlobalProblem &problem);
+
+// ||q||_2 of the contacts that an impulse can move, m/s.
+double free_norm(const GlobalProblem &problem);
+
+}    // namespace nscd

@@ -1,0 +1,63 @@
+#include "scene/belts.hpp"
+
+#include <algorithm>
+
+namespace nscd {
+
+namespace {
+
+bool is_under_way(const Grains &g, int i)
+{
+  const double *v = g.v + 3 * std::size_t(i);
+  return !g.moves(i) && (v[0] != 0 || v[1] != 0 || v[2] != 0);
+}
+
+std::array<double, 3> place(const Grains &g, int i)
+{
+  const double *x = g.x + 3 * std::size_t(i);
+  return {x[0], x[1], x[2]};
+}
+
+}    // namespace
+
+void Belts::see(const Grains &g)
+{
+  seen_.clear();
+  for (int i = 0; i < g.owned; ++i)
+    if (is_under_way(g, i)) seen_.push_back({g.tag[i], place(g, i)});
+  std::sort(seen_.begin(), seen_.end(), [](const Seen &a, const Seen &b) { return a.tag < b.tag; });
+}
+
+const Belts::Seen *Belts::last_seen(std::int32_t tag) const
+{
+  const auto at = std::lower_bound(seen_.begin(), seen_.end(), tag, [](const Seen &a, int b) { return a.tag < b; });
+  return at != seen_.end() && at->tag == tag ? &*at : nullptr;
+}
+
+// A new list wraps atoms round the box, which looks like a long way that has nothing to do with their velocity.
+void Belts::find(State &s, bool paces) const
+{
+  const Grains &g = s.grains;
+  s.ways.clear();
+  s.paces.clear();
+  for (int i = 0; i < g.owned; ++i) {
+    if (!is_under_way(g, i)) continue;
+    if (s.ways.empty()) s.ways.assign(s.moving(), Way::has_moved);
+    if (paces) s.paces.resize(g.owned);
+    const double *x = g.x + 3 * std::size_t(i), *v = g.v + 3 * std::size_t(i);
+    const Vec4 velocity{v[0], v[1], v[2], 0};
+    if (paces) s.paces[i] = velocity;
+    const Seen *const seen = last_seen(g.tag[i]);
+    if (g.mask[i] & g.later) {
+      s.ways[i] = Way::will_move;
+    } else if (seen && seen->x == place(g, i)) {
+      s.ways[i] = Way::stands;
+    } else if (seen && paces) {
+      const Vec4 moved{x[0] - seen->x[0], x[1] - seen->x[1], x[2] - seen->x[2], 0};
+      const Vec4 off = moved - velocity * s.dt;
+      if (std::min(dot(moved, moved), dot(off, off)) < g.radius[i] * g.radius[i]) s.paces[i] = moved * (1 / s.dt);
+    }
+  }
+}
+
+}    // namespace nscd

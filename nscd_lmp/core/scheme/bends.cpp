@@ -1,0 +1,238 @@
+#include "scheme/bends.hpp"
+
+#include "scene/contact_plane.hpp"
+#include "scene/slides.hpp"
+#include "solver/across_ranks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nscd {
+
+namespace {
+
+constexpr double parts_of_step = 100;
+
+char parts(const State &s, double moment) { return char(parts_of_step * moment / s.dt); }
+
+bool is_grain(const State &s, int body) { return s.bodies[body][3] > 0; }
+
+// How a pair lies and moves behind the impacts so far.
+struct Pair {
+  alignas(vec4_alignment) Vec4 separation;   // m, where its way comes from
+  alignas(vec4_alignment) Vec4 parting;      // m/s
+};
+
+Pair pair_now(const State &s, std::size_t k)
+{
+  const Contact &c = s.contacts[k];
+  const ContactInfo &info = s.infos[k];
+  return {separation_at_start(s, info) + s.courses.start[c.i] - s.courses.start[c.j],
+          without_fourth(s.bodies[c.i] - s.bodies[c.j]) + carried_apart(s, {info.atom_i, info.atom_j})};
+}
+
+// As take_plane(), with what impacts have given along it.
+void turn(State &s, std::size_t k, const Vec4 &there)
+{
+  take_plane(s, k, there);
+  auto &tangential = s.friction.impact_impulse;
+  if (!tangential.empty()) tangential[k] = turned_along(s.contacts[k].normal, tangential[k]);
+}
+
+// Whether neither course bends.
+bool is_straight(const State &s, const Contact &c)
+{
+  const auto bends = [&s](int body) { return is_grain(s, body) && !s.courses.straight[body]; };
+  return !bends(c.i) && !bends(c.j);
+}
+
+// How far the plane of contact k is at the end of the step, m; an overlap that it had is none.
+double plane_at_end(const State &s, std::size_t k, double u)
+{
+  return plane_gap(s, k) - std::min(s.infos[k].gap, 0.0) + s.dt * u;
+}
+
+}    // namespace
+
+void Bends::begin(State &s)
+{
+  meetings_.reserve(s.contacts.size());
+  s.courses.shift.assign(s.bodies.size(), Vec4{});
+  s.courses.start.assign(s.bodies.size(), Vec4{});
+  s.courses.work = 0;
+  struck_.assign(s.bodies.size(), 0);
+  s.courses.straight.resize(s.bodies.size());
+  for (std::size_t k = 0; k < s.contacts.size(); ++k)
+    if (s.infos[k].curve < 0 && is_straight(s, s.contacts[k])) turn(s, k, separation_at_start(s, s.infos[k]));
+}
+
+void Bends::find_starts(State &s) const
+{
+  for (int i = 0; i < s.moving(); ++i) {
+    if (!is_grain(s, i) || s.courses.straight[i]) {
+      s.courses.start[i] = Vec4{};
+      continue;
+    }
+    const Vec4 struck = s.bodies[i] - start_velocity(s, i) - 0.5 * smooth_kick(s, i);
+    s.courses.start[i] = s.courses.shift[i] - without_fourth(struck) * (0.5 * s.dt);
+  }
+}
+
+double Bends::last_struck(const State &s, const Contact &c) const
+{
+  const auto at = [&](int body) { return s.courses.straight[body] ? char(0) : struck_[body]; };
+  return s.dt / parts_of_step * std::max(at(c.i), at(c.j));
+}
+
+std::optional<double> Bends::meet(State &s, std::size_t k) const
+{
+  const Contact &c = s.contacts[k];
+  const double struck = last_struck(s, c);
+  const bool is_flat = s.infos[k].atom_j < 0 || is_straight(s, c);
+  std::optional<double> moment = is_flat ? meet_plane(s, k, struck) : meet_grain(s, k, struck);
+  if (moment) *moment += struck;
+  return moment && *moment <= s.dt ? moment : std::nullopt;
+}
+
+std::optional<double> Bends::meet_plane(const State &s, std::size_t k, double struck) const
+{
+  const double closing = -(normal_velocity(s.contacts[k], s.bodies.data()) + normal_drift(s, k));
+  const double gap = s.infos[k].gap + put_apart(s, s.contacts[k]);
+  return closing > 0 ? std::optional(std::max(gap / closing - struck, 0.0)) : std::nullopt;
+}
+
+std::optional<double> Bends::meet_grain(State &s, std::size_t k, double struck) const
+{
+  constexpr double most_turned = 0.5;   // cosine: a pair that is turned by more would be let through each other
+  const ContactInfo &info = s.infos[k];
+  const Pair pair = pair_now(s, k);
+  const double growth = growth_of(s, {info.atom_i, info.atom_j});
+  const double radii = s.spheres[info.atom_i].radius + s.spheres[info.atom_j].radius + growth * struck;
+  const Vec4 start = separation_at_start(s, info), now = pair.separation + pair.parting * struck;
+  const auto is_turned = [&](const Vec4 &there) {
+    return dot(there, start) < most_turned * std::sqrt(dot(there, there) * dot(start, start));
+  };
+  const auto moment = meeting(now, radii, pair.parting, growth);
+  const Vec4 there = now + pair.parting * std::clamp(moment.value_or(s.dt - struck), 0.0, s.dt - struck);
+  if (is_turned(now) || is_turned(there)) {
+    turn(s, k, start);
+    return 0;
+  }
+  turn(s, k, there);
+  return moment;
+}
+
+// The smooth forces change velocities evenly: at `moment` they differ by this from those in the middle, along n.
+double Bends::kick_until(const State &s, std::size_t k, double moment) const
+{
+  const Contact &c = s.contacts[k];
+  const auto kick = [&](int body) {
+    return is_grain(s, body) && !s.courses.straight[body] ? smooth_kick(s, body) : Vec4{};
+  };
+  return dot(c.normal, kick(c.i) - kick(c.j)) * (moment / s.dt - 0.5);
+}
+
+void Bends::look(State &s, const IsImpact &is_impact)
+{
+  find_starts(s);
+  meetings_.clear();
+  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
+    const double before = normal_velocity(s.contacts[k], s.bodies.data()) + normal_drift(s, k);
+    if (plane_at_end(s, k, before) >= 0) continue;
+    const auto moment = meet(s, k);
+    if (!moment) continue;
+    const double u = normal_velocity(s.contacts[k], s.bodies.data()) + normal_drift(s, k);
+    const double kick = kick_until(s, k, *moment);
+    if (is_impact(k, u + kick)) meetings_.push_back({k, *moment, kick});
+  }
+}
+
+const std::vector<Bends::Meeting> &Bends::first_meetings(State &s)
+{
+  sooner_.assign(s.bodies.size(), 0);
+  const auto left = [&s](const Meeting &met) { return char(parts_of_step - parts(s, met.moment)); };
+  const auto each = [&](const Meeting &met, auto act) {
+    for (const int body : {s.contacts[met.contact].i, s.contacts[met.contact].j})
+      if (is_grain(s, body)) act(body);
+  };
+  for (const Meeting &met : meetings_) each(met, [&](int b) { sooner_[b] = std::max(sooner_[b], left(met)); });
+  if (s.halo) s.halo->spread(sooner_);
+  std::erase_if(meetings_, [&](const Meeting &met) {
+    bool later = false;
+    each(met, [&](int b) { later |= left(met) < sooner_[b]; });
+    return later;
+  });
+  return meetings_;
+}
+
+void Bends::act(State &s, std::size_t count)
+{
+  change_across(s.halo, s.courses.shift, nullptr, [&] {
+    for (std::size_t k = 0; k < count; ++k) {
+      const Contact &c = s.contacts[k];
+      const double moment = s.courses.moment[k];
+      const Vec4 way = (c.normal * c.impulse + tangential_impulse(s, k)) * (0.5 * s.dt - moment);
+      s.courses.work += c.impulse * s.courses.kick[k];
+      for (const int body : {c.i, c.j}) {
+        const double moved = body == c.i ? s.bodies[body][3] : -s.bodies[body][3];
+        if (!s.courses.straight[body]) s.courses.shift[body] += way * moved;
+        if (c.impulse > 0 && is_grain(s, body)) struck_[body] = std::max(struck_[body], parts(s, moment));
+      }
+    }
+  });
+  if (s.halo) s.halo->spread(struck_);
+}
+
+// Contacts that are to be pushed apart although they part, by more than a solved step leaves.
+void Bends::find_contradictions(State &s)
+{
+  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
+    const Contact &c = s.contacts[k];
+    const auto is_kept = [&] {
+      const double parts = std::max(0.0, normal_velocity(c, s.bodies.data()) + normal_drift(s, k));
+      return plane_at_end(s, k, parts) >= -left_of_overlap(s, worth(s.infos[k]), s.infos[k].radius);
+    };
+    if (put_apart(s, c) == 0 || is_kept()) continue;
+    meet(s, k);
+    if (is_kept()) continue;
+    for (const int body : {c.i, c.j}) s.courses.straight[body] = is_grain(s, body);
+  }
+}
+
+// Shifts of straight bodies are taken back, and planes between them that would drive pairs apart.
+void Bends::take_back(State &s)
+{
+  for (std::size_t b = 0; b < s.courses.straight.size(); ++b)
+    if (s.courses.straight[b]) s.courses.shift[b] = Vec4{};
+  find_starts(s);
+  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
+    const Contact &c = s.contacts[k];
+    const ContactInfo &info = s.infos[k];
+    if (info.curve < 0 && is_straight(s, c)) turn(s, k, separation_at_start(s, info));
+  }
+}
+
+bool Bends::straighten(State &s)
+{
+  before_ = s.courses.straight;
+  find_contradictions(s);
+  if (s.halo) s.halo->spread(s.courses.straight);
+  take_back(s);
+  return sum_everywhere(s, double(s.courses.straight != before_)) > 0;
+}
+
+void Bends::straighten_connected(State &s, std::size_t count)
+{
+  joined_.clear();
+  for (const Contact &c : s.contacts)
+    if (is_grain(s, c.i) && is_grain(s, c.j)) joined_.push_back({c.i, c.j});
+  islands_.find(s.bodies.size(), joined_, s.halo);
+  islands_.clear_sums();
+  for (std::size_t k = 0; k < count; ++k) islands_.add(grain_of(s.contacts[k], s.bodies.data()), {1, 0});
+  if (s.halo) islands_.sum(0)[0] = s.halo->sum(islands_.sum(0)[0]);
+  for (int b = 0; b < s.moving(); ++b)
+    if (is_grain(s, b) && islands_.sum(islands_.of(b))[0] > 0) s.courses.straight[b] = 1;
+  take_back(s);
+}
+
+}    // namespace nscd

@@ -1,0 +1,122 @@
+#include "scheme/impacts.hpp"
+
+#include "scene/contact_order.hpp"
+#include "scene/drift_of.hpp"
+#include "scene/slides.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace nscd {
+
+namespace {
+
+constexpr double resting_kicks = 2;    // slower than so many smooth velocity changes of its grains: resting
+constexpr double most_visits = 50;     // of a contact, in the mean, by the rounds of a step
+// Each round looks at all contacts, few as those may be that it visits: so many looks, within these rounds.
+constexpr double most_looks = 5e6, least_rounds = 50, most_rounds = 1000;
+constexpr double cheap_visits = 1000;  // that any step may have
+constexpr double worth_saying = 0.01;  // of the energy that the first round had
+
+// Adds sign times half the smooth velocity change of the step.
+void smooth_half(State &s, double sign)
+{
+  for (int i = 0; i < s.moving(); ++i) s.bodies[i] += smooth_kick(s, i) * (0.5 * sign);
+  if (s.friction.model != Model::frictionless) add_smooth_spins(s, 0.5 * sign);
+}
+
+// Biases of an impact: what is left of the velocity when they meet, drift included, reversed.
+void bias_impact(State &s, std::size_t k, double u, double kick)
+{
+  const double e = s.settings.restitution;
+  s.contacts[k].bias = e * (u + kick) + kick + normal_drift(s, k);
+  with_friction(s.friction.model, [&]<class M>(M) {
+    const auto slip = velocity<M>(s.contacts[k], s.bodies.data(), s.friction.spins.data()).t;
+    const auto drift = tangential_drift<M>(s, k);
+    set_bias(s.friction.slides<M>()[k], (slip + drift) * s.settings.e_t + drift);
+  });
+}
+
+// The contacts of S_m.
+struct Closing {
+  std::size_t here = 0;   // of this rank, at the front
+  double all = 0;         // of all ranks
+  double energy = 0;      // of all ranks, J: what they approach each other with
+};
+
+// Brings the contacts of S_m to the front and gives them their bias. In place: copies of them would double the memory
+// of a contact.
+Closing select_closing(State &s, Bends &bends)
+{
+  std::size_t closing = 0;
+  double energy = 0;
+  bends.look(s, [&](std::size_t k, double u) {
+    return u < -resting_kicks * s.infos[k].kick - tolerances * tolerance(s, worth(s.infos[k]));
+  });
+  s.courses.moment.clear();
+  s.courses.kick.clear();
+  for (const Bends::Meeting &met : bends.first_meetings(s)) {
+    swap_contacts(s, met.contact, closing);
+    const double u = normal_velocity(s.contacts[closing], s.bodies.data()) + normal_drift(s, closing);
+    energy += 0.5 * s.contacts[closing].w_inverse * u * u;
+    s.courses.moment.push_back(met.moment);
+    s.courses.kick.push_back(met.kick);
+    bias_impact(s, closing++, u, met.kick);
+  }
+  double sums[] = {double(closing), energy};
+  if (s.halo) {
+    s.halo->find_touching(s);
+    s.halo->sum(sums);
+  }
+  return {closing, sums[0], sums[1]};
+}
+
+void keep_impulses(State &s, std::size_t closing)
+{
+  resize_closely(s.impact_impulse, s.contacts.size());
+  for (std::size_t k = 0; k < closing; ++k) s.impact_impulse[k] += std::exchange(s.contacts[k].impulse, 0.0);
+  with_friction(s.friction.model, [&]<class M>(M) {
+    auto &kept = s.friction.impact_impulse;
+    resize_closely(kept, s.contacts.size());
+    for (std::size_t k = 0; k < closing; ++k) {
+      const auto impulse = std::exchange(s.friction.slides<M>()[k].impulse, typename M::Tangent{});
+      kept[k] += M::in_space(s.contacts[k].normal, impulse);
+    }
+  });
+}
+
+}    // namespace
+
+bool resolve_impacts(State &s, Bends &bends, const SolvePart &solve)
+{
+  s.impact_impulse.clear();
+  s.friction.impact_impulse.clear();
+  s.per_approach.clear();   // of the last step's contacts, which are others
+  smooth_half(s, -1);
+  bends.begin(s);
+  Closing closing = select_closing(s, bends);
+  const double first_energy = closing.energy;
+  const double contacts = sum_everywhere(s, double(s.contacts.size()));
+  const double rounds = std::clamp(most_looks / std::max(contacts, 1.0), least_rounds, most_rounds);
+  double visits = std::max(cheap_visits, most_visits * contacts);
+  for (int round = 0; round < rounds && visits > 0; ++round) {
+    if (closing.all == 0) {
+      if (!bends.straighten(s)) break;
+      closing = select_closing(s, bends);
+      continue;
+    }
+    visits -= closing.all;
+    solve(closing.here);
+    bends.act(s, closing.here);
+    keep_impulses(s, closing.here);
+    closing = select_closing(s, bends);
+  }
+  if (closing.all > 0) bends.straighten_connected(s, closing.here);
+  s.courses.moment.clear();
+  s.courses.kick.clear();
+  smooth_half(s, +1);
+  const double e = s.settings.restitution;
+  return e * e * closing.energy > worth_saying * first_energy;
+}
+
+}    // namespace nscd

@@ -1,0 +1,92 @@
+// What the user chooses, and the checks on it: one place for both doors.
+#pragma once
+
+#include "solver/solver.hpp"
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace nscd {
+
+// Half-space obstacle: `point` on the plane, `normal` into the free side (any length; made unit by Settings).
+struct Plane {
+  double point[3];
+  double normal[3];
+  std::optional<double> friction{};  // its own coefficient; none: that of the pairs
+};
+
+// Moment of inertia: 2/5 m r^2 of a sphere, 1/2 m r^2 of a disc.
+enum class Inertia { sphere, disc };
+
+// Friction coefficient of contacts that do not slip.
+constexpr double stick = std::numeric_limits<double>::infinity();
+
+enum class Unconverged { ignore, warn, error };
+Unconverged parse_unconverged(const std::string &word);
+const char *name(Unconverged policy);
+
+Stop parse_stop(const std::string &word);
+
+// How good the answers of steps are with criterion natural, where tol, overlap and budget are not given.
+enum class Accuracy { loose, normal, tight };
+Accuracy parse_accuracy(const std::string &word);
+
+struct Settings {
+  std::string solver = "auto";
+  std::string law = "gap";
+  double restitution = 0;        // Newton's e, 0..1
+  double friction = 0;           // Coulomb's mu of pairs, and of walls without their own; may be `stick`
+  double e_t = 0;                // tangential restitution, 0..1
+  std::optional<Inertia> inertia;  // none: disc in dimension 2, sphere otherwise
+  std::optional<Accuracy> accuracy;   // none: normal
+  // On the criterion. None: natural, relative to the scene's own velocities; a tol of criterion paper is in m/s.
+  std::optional<double> tol;
+  std::optional<Stop> criterion;
+  std::optional<double> overlap;   // of the smallest radius: what a contact may be driven into another in a step
+  int maxiter = 1000;
+  std::optional<int> budget;     // sweeps after which a step with friction may be accepted above tol; 0: never
+  bool warmstart = true;
+  std::optional<double> rho;     // multiple of 1/W_nn; none: the solver's own default
+  std::optional<double> gamma;
+  double theta = 0.5;            // law moreau
+  double recovery = 0.2;         // law gap: share of an overlap given back per step, speed-limited
+  Unconverged unconverged = Unconverged::warn;
+  int threads = 1;               // of each rank
+  std::vector<Plane> walls;
+
+  double wall_friction(std::size_t wall) const { return walls[wall].friction.value_or(friction); }
+  // Whether any contact has friction.
+  bool frictional() const;
+};
+
+// Reads `keyword value ...` as fix nscd takes them; raises Error for an unknown keyword, one that is given twice or
+// stands where it would not mean what it seems to, or a value that is no number.
+void parse_keywords(Settings &settings, const std::vector<std::string> &words);
+
+// A single contact of a solved step misses the mean criterion by about so many times `tol`.
+constexpr double tolerances = 10;
+
+// A residual over the velocities that matter, be it those that contacts have to stop or those that a step adds, beyond
+// which what is solved is not to be trusted, whatever the criterion says.
+constexpr double residual_worth_saying = 0.1;
+// Of the bound on overlaps, by how much planes of lasting contacts may be nearer than the surface.
+constexpr double share_of_planes = 0.5;
+// Of tol, what impacts under restitution are solved to.
+constexpr double tol_of_impacts = 1e-3;
+
+// rho or gamma, whichever the solver takes, as a multiple of 1/W_nn; 0 if it takes none.
+double solver_parameter(const Settings &settings, const SolverEntry &solver);
+
+// When a step may be accepted.
+Budget budget_of(const Settings &settings);
+
+// The settings of Barboteu & Dumont (2017): `paper yes`.
+void follow_paper(Settings &settings);
+
+// Raises Error (value, limit, remedy) for anything out of range or that does not fit the dimension; normalises the
+// walls' normals, and fills in tol, criterion and overlap.
+Settings checked(Settings settings, int dimension = 3);
+
+}    // namespace nscd

@@ -1,0 +1,124 @@
+#include "step/report.hpp"
+
+#include "scene/drifted.hpp"
+#include "scene/slides.hpp"
+
+#include <sstream>
+
+namespace nscd {
+
+double report_column(const StepReport &r, int column)
+{
+  switch (column) {
+    case 0: return double(r.contacts);
+    case 1: return r.iterations;
+    case 2: return r.criterion.total();
+    case 3: return r.criterion.motion;
+    case 4: return r.criterion.bipotential;
+    case 5: return r.criterion.penetration;
+    case 6: return r.criterion.relative;
+    case 7: return r.largest_overlap;
+    case 8: return r.dissipated;
+    case 9: return r.largest_overlap_ratio;
+    case 10: return double(r.unconverged);
+    case 11: return double(r.energy_limited);
+    case 12: return r.criterion.worst;
+    case 13: return double(r.accepted_steps);
+  }
+  return 0;
+}
+
+int contact_columns(const Settings &settings)
+{
+  return int(contact_column_names.size()) - (settings.frictional() ? 0 : tangential_columns);
+}
+
+void fill_contact_rows(const State &s, double *row)
+{
+  const int columns = contact_columns(s.settings);
+  const double per_force = s.grains.force_to_acceleration;   // impulses are mass times velocity within
+  for (std::size_t k = 0; k < s.contacts.size(); ++k, row += columns) {
+    const Contact &c = s.contacts[k];
+    const ContactInfo &info = s.infos[k];
+    const Sphere a = in_arrays(s, info.atom_i);
+    const Vec4 point = a.centre - c.normal * (a.radius + 0.5 * info.gap);
+    row[0] = s.grains.tag[info.atom_i];
+    row[1] = info.atom_j >= 0 ? s.grains.tag[info.atom_j] : info.atom_j;
+    for (int d = 0; d < 3; ++d) {
+      row[2 + d] = point[d];
+      row[5 + d] = c.normal[d];
+    }
+    row[8] = info.gap;
+    row[9] = c.impulse / per_force;
+    if (s.friction.model == Model::frictionless) continue;
+    const Vec4 tangential = tangential_impulse(s, k);
+    for (int d = 0; d < 3; ++d) row[10 + d] = tangential[d] / per_force;
+  }
+}
+
+static std::string describe_solver(const Settings &s)
+{
+  const SolverEntry &solver = find_solver(s.solver);
+  std::ostringstream text;
+  if (solver.kind != "local law") return std::string(solver.title);
+  text << "NLGS with " << solver.title << " (" << solver.parameter << " = " << solver_parameter(s, solver) << "/W_nn)";
+  return text.str();
+}
+
+static std::string coefficient(double mu)
+{
+  if (mu == stick) return "stick";
+  std::ostringstream text;
+  text << mu;
+  return text.str();
+}
+
+static std::string describe_model(const Settings &s, const Friction &friction)
+{
+  if (friction.model == Model::frictionless) return "frictionless: 1 unknown per contact, no spins";
+  std::string text = "friction " + coefficient(s.friction);
+  for (std::size_t k = 0; k < s.walls.size(); ++k)
+    if (s.walls[k].friction) text += ", " + coefficient(*s.walls[k].friction) + " on wall " + std::to_string(k + 1);
+  text += friction.model == Model::planar ? "; planar: 2 unknowns per contact, spins about z"
+                                          : "; spatial: 3 unknowns per contact, spins";
+  return text + (friction.spin_response == disc_spin_response ? " of discs" : " of spheres");
+}
+
+static std::string describe_restitution(const Settings &s)
+{
+  if (s.restitution == 0 && s.e_t == 0) return "no restitution term";
+  std::ostringstream text;
+  text << "impacts with restitution " << s.restitution;
+  if (s.frictional()) text << ", tangential " << s.e_t;
+  return text.str();
+}
+
+static std::string describe_ranks(const Halo *halo, int threads)
+{
+  const std::string team = threads > 1 ? std::to_string(threads) + " threads" : "";
+  if (!halo) return team.empty() ? "one rank: no exchange" : "one rank, " + team + ": no exchange";
+  return std::to_string(halo->ranks().count()) + (team.empty() ? " ranks" : " ranks, " + team + " each") +
+         ": grains that several ranks touch are exchanged every iteration";
+}
+
+static std::string describe_overlap(const Settings &s)
+{
+  std::ostringstream text;
+  if (s.overlap) text << ", overlap " << *s.overlap;
+  return text.str();
+}
+
+std::string describe(const Step &step)
+{
+  const Settings &s = step.settings();
+  std::ostringstream text;
+  text << "law " << s.law << ", " << (step.has_custom_solver() ? "a solver handed in" : describe_solver(s)) << ", tol "
+       << *s.tol << (s.criterion == Stop::natural ? " (natural map)" : " (criterion paper)") << describe_overlap(s)
+       << ", " << s.walls.size()
+       << (s.walls.size() == 1 ? " wall" : " walls")
+       << "; " << describe_model(s, step.state().friction) << "; " << describe_restitution(s)
+       << "; " << describe_ranks(step.halo(), s.threads);
+  return text.str();
+}
+
+}    // namespace nscd

@@ -1,0 +1,171 @@
+// One step of the scheme: arrays in, contacts, solver, arrays out. Both doors call this and nothing beneath it.
+#pragma once
+
+#include "parallel/halo.hpp"
+#include "parallel/team.hpp"
+#include "scene/belts.hpp"
+#include "scene/detection.hpp"
+#include "scene/drift.hpp"
+#include "scene/left_places.hpp"
+#include "scene/list_guard.hpp"
+#include "scene/missed_pairs.hpp"
+#include "scene/state.hpp"
+#include "scheme/law.hpp"
+#include "solver/solver.hpp"
+#include "step/calm.hpp"
+#include "step/energy_limit.hpp"
+#include "step/remarks.hpp"
+#include "warm_start/warm_start.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <set>
+#include <span>
+
+namespace nscd {
+
+// What a step reports; the columns of the stats table and of fix nscd's vector.
+struct StepReport {
+  std::int64_t contacts = 0;
+  int iterations = 0;
+  Criterion criterion;
+  double largest_overlap = 0;        // m, at q_{k+1}
+  double largest_overlap_ratio = 0;  // over the smaller radius of the pair
+  double largest_move_ratio = 0;     // dt times the fastest grain's speed at the start, over the smallest radius
+  double pushed = 0;                 // N s, sum of the normal impulses between grains, in boxes that stand still
+  double passed2 = 0;                // N s, weighed by them: by how much of a diameter pairs pass each other, squared
+  double dissipated_in_step = 0;     // J, by contacts
+  double dissipated = 0;             // J, by contacts since begin_run
+  long unconverged = 0;              // steps since begin_run
+  long accepted_steps = 0;           // steps since begin_run
+  long energy_limited = 0;           // steps since begin_run in which impulses were scaled back, since they made energy
+  bool unread_torque = false;        // a frictionless step met torques
+  bool converged = true;             // or accepted
+  bool accepted = false;             // above tol, but good enough for the sweeps that it has cost
+  bool jammed = false;               // unconverged, since obstacles approach and nothing can give way
+  bool impacts_left = false;         // impacts under restitution that did not end were taken as inelastic
+  double seconds_contacts = 0;       // detection, biases, update
+  double seconds_solver = 0;
+};
+
+class Step {
+ public:
+  // Takes the place of the built-in solver: reads the first `contacts` contacts (all of the step's, or those of a round
+  // of impacts), overwrites their start impulses (N s; per contact N, or N, T1[, T2] along tangents()).
+  using CustomSolver = std::function<void(const State &, std::size_t contacts, std::span<double>)>;
+
+  // `dimension`: 3, or 2 for grains in a plane z = const; with the settings it decides how many unknowns a contact has.
+  // Raises Error for bad settings, or for settings that do not fit the dimension.
+  // `ranks`: those that share the scene; null for one. They must outlive the step.
+  explicit Step(const Settings &settings, CustomSolver custom = {}, int dimension = 3, Ranks *ranks = nullptr);
+  Step(const Step &) = delete;
+  Step &operator=(const Step &) = delete;
+
+  // Energy and unconverged steps count from here. `list_just_built`: the first step starts from its positions.
+  void begin_run(bool list_just_built);
+
+  // What radii and box are as the run starts, and where obstacles: without it the first step does not know what has
+  // changed since. Local.
+  void see(const Grains &grains)
+  {
+    drifts_.see(grains);
+    belts_.see(grains);
+  }
+
+  // One step of length dt (s). Raises Error and leaves the arrays as they were if the input is bad, a contact
+  // can be missed, or the step does not converge under `unconverged error`.
+  const StepReport &advance(const Grains &grains, const PairList &pairs, double dt);
+
+  // Something that is no integrator may have moved grains since the last step.
+  void forget_places() { left_.forget(); }
+
+  const StepReport &report() const { return report_; }
+  const Settings &settings() const { return settings_; }
+  bool has_custom_solver() const { return bool(custom_); }
+  const State &state() const { return state_; }
+  const Halo *halo() const { return halo_.get(); }
+  // What users are to be told of the steps since they were last told.
+  std::vector<std::string> take_remarks() { return remarks_.take(settings_, law_->looks_ahead()); }
+  // What users are to be told of threads without cores of their own; empty if there are none.
+  const std::string &crowding() const { return crowding_; }
+
+  // The impulses that the next step starts from, to be kept between runs.
+  WarmStart &memory() { return memory_; }
+
+  // After a step: true if the next one needs a fresh neighbor list to be sure of every contact. Collective.
+  bool wants_rebuild();
+
+ private:
+  // How far around q_k contacts are sought, m, for a grain of this speed.
+  double longest_move(double speed) const { return state_.dt * speed * (look_ahead_ + prediction_); }
+  // Runs `local`, on several ranks so that all fail if one does.
+  void together(const std::function<void()> &local);
+  void prepare(const PairList &pairs);
+  void require_list(double speed);
+  void watch_unlisted();
+  void refuse_unwatchable();
+  [[noreturn]] void refuse_missed(double cutoff) const;
+  void refuse_unless_all_known() const;
+  void refuse_drifting(double ahead) const;
+  void start_contacts(std::size_t first, bool again);
+  void start_turned();
+  void begin_rounds();
+  void solve();
+  bool promote();
+  void resolve_impacts_first(bool again);
+  void judge();
+  // One solve of a step.
+  struct Part {
+    std::size_t contacts;  // the first ones of the step
+    double e, e_t;         // restitution that the biases contain
+    double norm;           // of free velocities and biases
+    double tol = 1;        // of options_.tol
+  };
+  bool doubts_contacts() const;
+  bool sweep_briefly(const Part &part, int sweeps);
+  bool solve_part(const Part &part, int maxiter);
+  void share_among_threads(std::size_t contacts);
+  SolverReport solve_problem(Problem &problem, const SolverOptions &options);
+  void solve_within_energy(const Part &part, EnergyLimit::From from);
+  void ask_custom(std::size_t count);
+  void finish();
+  void tally_contacts();
+  void write_back();
+
+  const Settings settings_;
+  const SolverEntry *solver_;
+  CustomSolver custom_;
+  const std::unique_ptr<Law> law_;
+  State state_;
+  const std::unique_ptr<Halo> halo_;   // none on one rank
+  const std::unique_ptr<Team> team_;   // none on one thread
+  ListGuard list_;
+  Belts belts_;
+  Drifts drifts_;
+  const PairList *pairs_ = nullptr;    // of the step
+  LeftPlaces left_;
+  WarmStart memory_;
+  EnergyLimit energy_limit_;
+  Calm calm_;
+  Calm::Found calmed_;             // in the last solve
+  SolverOptions options_;
+  Workspace workspace_;
+  StepReport report_;
+  Remarks remarks_;
+  const Sought sought_;            // all pairs within reach where another round costs as much as the first
+  const double prediction_;        // contacts are sought at q_k + prediction dt v_k
+  const double look_ahead_;        // and this times dt |v| around (0 or 1)
+  AlignedVector<Body> free_bodies_;  // as gathered, where impacts may have to be resolved again
+  AlignedVector<Vec4> free_spins_;
+  bool energy_limited_ = false;    // in this step
+  bool shared_among_threads_ = false;   // the contacts that are being solved
+  int started_at_ = 0;             // iterations of the step before the solves that share a budget
+  double free_norm_ = 0;           // of the step's contacts, m/s
+  MissedPairs missed_{list_};
+  std::set<std::pair<int, int>> unlisted_;   // pairs that were found beyond the list after a solve of this step
+  double listed_ = 0, moved_ = 0;  // as Reach has them
+  const std::string crowding_;
+};
+
+}    // namespace nscd
