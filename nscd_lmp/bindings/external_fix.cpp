@@ -52,7 +52,7 @@ void ExternalFix::begin_run(int first_call)
 {
   require_atoms();
   require_last();
-  require_walls_repeat(step_.settings(), box());
+  require_walls_repeat(step_.settings().walls, box());
   find_list();
   homes_.clear();
   reach_.begin_run();

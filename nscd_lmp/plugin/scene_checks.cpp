@@ -124,7 +124,7 @@ void SceneChecks::require_steps() const
 void SceneChecks::require_walls_repeat(const nscd::Settings &settings) const
 {
   const bool tilted = domain->triclinic;
-  nscd::require_walls_repeat(settings,
+  nscd::require_walls_repeat(settings.walls,
                              {{{domain->xprd, 0, 0},
                                {tilted ? domain->xy : 0, domain->yprd, 0},
                                {tilted ? domain->xz : 0, tilted ? domain->yz : 0, domain->zprd}},

@@ -1,7 +1,7 @@
 // What solver auto hands to whom: grains and matrices alike, the same bits every time.
 #include "check.hpp"
-#include "problem/delassus.hpp"
 #include "scene.hpp"
+#include "solver/global/on_grains.hpp"
 
 #include <cmath>
 

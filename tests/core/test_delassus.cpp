@@ -3,6 +3,7 @@
 #include "contact/tangents.hpp"
 #include "problem/delassus.hpp"
 #include "scene.hpp"
+#include "solver/global/on_grains.hpp"
 
 #include <cmath>
 

@@ -1,9 +1,9 @@
 // Walls in periodic boxes.
 #pragma once
 
-#include "settings/settings.hpp"
+#include "obstacle/plane.hpp"
 
-#include <vector>
+#include <span>
 
 namespace nscd {
 
@@ -14,6 +14,6 @@ struct BoxEdges {
 
 // Raises Error for a plane that is another one in the next image of the box: one whose normal is not perpendicular to
 // every edge along which the box is periodic.
-void require_walls_repeat(const Settings &settings, const BoxEdges &box);
+void require_walls_repeat(std::span<const Plane> walls, const BoxEdges &box);
 
 }    // namespace nscd

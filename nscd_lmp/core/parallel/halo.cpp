@@ -2,7 +2,6 @@
 
 #include "base/error.hpp"
 #include "parallel/halo_move.hpp"
-#include "scene/state.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -66,20 +65,6 @@ void Halo::together(const std::function<void()> &local)
   throw Error(std::string(letters.begin(), letters.end()));
 }
 
-void Halo::refresh(State &s)
-{
-  const bool spins = s.friction.model != Model::frictionless;
-  move(&Peer::owned, &Peer::copies, spins ? 6 : 3,
-       [&](int body, double *to) {
-         put(s.bodies[body], to);
-         if (spins) put(s.friction.spins[body], to + 3);
-       },
-       [&](int body, const double *from) {
-         take(s.bodies[body], from);
-         if (spins) take(s.friction.spins[body], from + 3);
-       });
-}
-
 bool Halo::spread(std::vector<char> &flags)
 {
   double changed = 0;
@@ -93,17 +78,17 @@ bool Halo::spread(std::vector<char> &flags)
   return max(changed) > 0;
 }
 
-void Halo::set_masses(Problem &problem, bool split)
+void Halo::set_masses(std::span<Body> bodies, std::span<Contact> contacts, bool split)
 {
   if (split == split_) return;
   split_ = split;
   for (const Shared &shared : shared_) {
-    problem.bodies[shared.body][3] = split ? shared.inverse_mass / shared.share : shared.inverse_mass;
+    bodies[shared.body][3] = split ? shared.inverse_mass / shared.share : shared.inverse_mass;
   }
   for (const std::uint32_t k : touching_) {
-    if (k >= problem.contacts.size()) continue;
-    Contact &c = problem.contacts[k];
-    c.w_inverse = 1 / (problem.bodies[c.i][3] + problem.bodies[c.j][3]);
+    if (k >= contacts.size()) continue;
+    Contact &c = contacts[k];
+    c.w_inverse = 1 / (bodies[c.i][3] + bodies[c.j][3]);
   }
 }
 

@@ -14,17 +14,23 @@
 // All functions but those marked local are collective.
 #pragma once
 
+#include "base/storage.hpp"
+#include "contact/contact.hpp"
 #include "parallel/ranks.hpp"
-#include "problem/problem.hpp"
 
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace nscd {
 
-struct State;
+// The atoms of this rank, and of its images the ranks that own their grains.
+struct Known {
+  std::span<const std::int32_t> owned, images;   // tags
+  std::span<const int> homes;                    // beside images
+};
 
 // What the halo has moved, for models of its cost.
 struct Traffic {
@@ -51,25 +57,26 @@ class Halo {
   // Runs `local`; if it throws on any rank, throws on all: there what was thrown, elsewhere Error with its words.
   void together(const std::function<void()> &local);
 
-  // With a new list, after state.owner is known for images of owned grains: gives the grains of other ranks their
-  // bodies (state.owner, state.copies.count).
-  void plan(State &state);
-  // At the start of a step: how the grains move that are copies here.
-  void share_motion(State &state);
-  // And where they are.
-  void share_places(State &state);
+  // Local. With a new list: gives the grains of other ranks that have images here bodies behind the owned ones, which
+  // `owner` gets, beside the images. Returns how many there are.
+  int find_copies(const Known &known, std::span<int> owner);
+  // Then tells the ranks that own them. `own_tags`: sorted, tag and index of owned atoms.
+  void announce_copies(std::span<const std::pair<std::int32_t, int>> own_tags);
+  // To all copies from their owners: messages of `width` numbers a body, pack(body, out) and unpack(body, in) for one
+  // body; halo_move.hpp.
+  template <class Pack, class Unpack>
+  void to_copies(std::size_t width, Pack pack, Unpack unpack);
+
   // With new contacts: which grains are shared, and in what proportions.
-  void share_contacts(State &state);
+  void share_contacts(std::span<const Body> bodies, std::span<const Contact> contacts);
   // Local. Which contacts touch them, if contacts have changed places since.
-  void find_touching(const State &state);
-  // Velocities of all copies from their owners.
-  void refresh(State &state);
+  void find_touching(std::span<const Contact> contacts);
   // Copies' flags to their owners and back: set for all if it is for one. Returns whether that changed any, anywhere.
   bool spread(std::vector<char> &flags);
 
   // Local. Masses of shared grains, and what contacts know of them, for sweeps; and back.
-  void split(Problem &problem) { set_masses(problem, true); }
-  void join(Problem &problem) { set_masses(problem, false); }
+  void split(std::span<Body> bodies, std::span<Contact> contacts) { set_masses(bodies, contacts, true); }
+  void join(std::span<Body> bodies, std::span<Contact> contacts) { set_masses(bodies, contacts, false); }
 
   // What every rank's contacts did to shared grains between open and close, put together. `open` is local.
   void open(std::span<const Body> bodies, const Vec4 *spins);
@@ -104,9 +111,9 @@ class Halo {
   };
   using Bodies = std::vector<std::int32_t>;
 
-  void set_masses(Problem &problem, bool split);
-  void find_shares(State &state);
-  void learn_tags(const State &state);
+  void set_masses(std::span<Body> bodies, std::span<Contact> contacts, bool split);
+  void find_shares(std::span<const Body> bodies, std::span<const Contact> contacts);
+  void learn_tags(const Known &known);
   Peer &peer(int rank);
 
   // Messages of `width` numbers a body; pack(body, out) and unpack(body, in) for one body.
@@ -123,7 +130,8 @@ class Halo {
   std::vector<std::int32_t> exchanged_;      // bodies that corrections are exchanged of
   std::vector<std::int32_t> place_;          // (bodies) index in exchanged_
   std::vector<std::pair<std::int32_t, int>> homes_;   // tag, rank: of all that is known here; sorted
-  std::vector<std::int32_t> tags_, arrivals_;
+  std::vector<std::int32_t> tags_, arrivals_;   // of owned grains
+  std::vector<std::int32_t> copied_;            // tags of copies, in the order of their bodies
   std::vector<Parcel> out_, in_;
   bool split_ = false;
 };

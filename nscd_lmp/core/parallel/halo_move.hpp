@@ -35,4 +35,10 @@ void Halo::move(Bodies Peer::*from, Bodies Peer::*to, std::size_t width, Pack pa
     for (std::size_t k = 0; k < (peer.*to).size(); ++k) unpack((peer.*to)[k], &peer.from[k * width]);
 }
 
+template <class Pack, class Unpack>
+void Halo::to_copies(std::size_t width, Pack pack, Unpack unpack)
+{
+  move(&Peer::owned, &Peer::copies, width, pack, unpack);
+}
+
 }    // namespace nscd

@@ -3,12 +3,13 @@
 #include "base/hot.hpp"
 #include "contact/carried_velocity.hpp"
 #include "contact/frame.hpp"
+#include "parallel/chunks.hpp"
 #include "parallel/halo.hpp"
 #include "problem/closer_look.hpp"
 #include "problem/natural_map.hpp"
-#include "solver/across_threads.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace nscd {

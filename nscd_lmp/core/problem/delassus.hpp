@@ -3,7 +3,6 @@
 
 #include "problem/global_problem.hpp"
 #include "problem/problem.hpp"
-#include "solver/solver.hpp"
 
 #include <vector>
 
@@ -26,17 +25,6 @@ class AssembledProblem {
   std::vector<double> q_, mu_, start_, p_;
   GlobalProblem problem_;
 };
-
-// Solves the problem of grains by a solver of all contacts at once; the criterion is then that of the bodies.
-SolverReport solve_assembled(Problem &grains, const SolverOptions &options,
-                             SolverReport (*solve)(GlobalProblem &, const SolverOptions &));
-
-// The same as a registry's entry wants it.
-template <SolverReport (*solve)(GlobalProblem &, const SolverOptions &)>
-SolverReport on_grains(Problem &grains, const SolverOptions &options)
-{
-  return solve_assembled(grains, options, solve);
-}
 
 // W alone.
 BlockMatrix delassus(const Problem &grains);

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "base/hot.hpp"
 #include "contact/moment.hpp"
+#include "obstacle/plane.hpp"
 #include "scene/drift_of.hpp"
 #include "scene/state.hpp"
 
@@ -14,18 +15,6 @@ namespace nscd {
 
 inline bool is_wall(const Candidate &candidate) { return candidate.atom_j < 0; }
 inline int wall_index(const Candidate &candidate) { return -1 - candidate.atom_j; }
-
-// n.x - offset is the height above the plane, m.
-struct Height {
-  alignas(vec4_alignment) Vec4 normal;
-  double offset;
-  explicit Height(const Plane &plane) :
-      normal{plane.normal[0], plane.normal[1], plane.normal[2], 0},
-      offset(dot(normal, Vec4{plane.point[0], plane.point[1], plane.point[2], 0}))
-  {
-  }
-  double of(const Vec4 &centre) const { return dot(normal, centre) - offset; }
-};
 
 // Identifies a contact across steps: a pair's tags in either order, or a tag and a wall. Tags are positive, so the
 // top bit tells the two apart.

@@ -1,5 +1,6 @@
 #include "scene/drift.hpp"
 
+#include "scene/copies.hpp"
 #include "scene/drift_of.hpp"
 
 #include <algorithm>
@@ -65,7 +66,7 @@ void Drifts::fill_jump(State &s) const
 {
   const Gradient rate = box_.jump() * give_back_rate(s.settings.recovery, s.dt, box_.before_run());
   const bool carried = box_.jump_carries_grains();
-  if (!carried && s.halo) s.halo->share_places(s);
+  if (!carried && s.halo) share_places(s);
   s.drift.jump.resize(std::size_t(s.grains.owned) + s.grains.ghosts);
   for (std::size_t a = 0; a < s.drift.jump.size(); ++a)
     s.drift.jump[a] = rate.at(carried ? place_of(s.grains, int(a)) : shift_of(s, int(a)));
@@ -77,7 +78,7 @@ void Drifts::fill(State &s)
   Drift &drift = s.drift;
   const std::vector<double> &rates = growth_.rates();
   const bool carried = box_.moves() && box_.carries_grains(), shifted = box_.moves() && !carried;
-  if (shifted && s.halo) s.halo->share_places(s);
+  if (shifted && s.halo) share_places(s);
   double growing = 0;
   drift.of.resize(std::size_t(g.owned) + g.ghosts);
   for (int a = 0; a < g.owned + g.ghosts; ++a) {

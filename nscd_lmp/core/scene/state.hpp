@@ -6,8 +6,8 @@
 #include "contact/contact.hpp"
 #include "contact/friction.hpp"
 #include "parallel/halo.hpp"
-#include "parallel/parts.hpp"
 #include "scene/drift.hpp"
+#include "scene/slabs.hpp"
 #include "scene/views.hpp"
 #include "settings/settings.hpp"
 

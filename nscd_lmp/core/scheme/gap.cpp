@@ -51,7 +51,6 @@ NSCD_HOT void set_biases(State &s, std::size_t first)
 class Gap final : public Law {
  public:
   double moment() const override { return 0.5; }
-  bool looks_ahead() const override { return true; }
   bool resolves_impacts(const Settings &settings) const override
   {
     return settings.restitution > 0 || settings.e_t > 0;
@@ -67,6 +66,6 @@ class Gap final : public Law {
 
 }    // namespace
 
-static const RegisterLaw gap({20, "gap", "gap", [] { return std::unique_ptr<Law>(new Gap); }});
+static const RegisterLaw gap({20, "gap", "gap", true, [] { return std::unique_ptr<Law>(new Gap); }});
 
 }    // namespace nscd

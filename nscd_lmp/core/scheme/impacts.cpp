@@ -65,7 +65,7 @@ Closing select_closing(State &s, Bends &bends)
   }
   double sums[] = {double(closing), energy};
   if (s.halo) {
-    s.halo->find_touching(s);
+    s.halo->find_touching(s.contacts);
     s.halo->sum(sums);
   }
   return {closing, sums[0], sums[1]};

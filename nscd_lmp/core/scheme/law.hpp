@@ -6,10 +6,9 @@
 
 #include "scene/state.hpp"
 #include "scheme/impacts.hpp"
+#include "settings/laws.hpp"
 
 #include <memory>
-#include <string_view>
-#include <vector>
 
 namespace nscd {
 
@@ -20,8 +19,6 @@ class Law {
   virtual double prediction(const Settings &) const { return 0; }
   // Lasting contacts act `moment` dt after that, along the normal that their pair has then.
   virtual double moment() const { return 0; }
-  // Whether contacts are sought ahead, within dt times the speeds, or only where spheres touch.
-  virtual bool looks_ahead() const { return false; }
   // Whether impacts are resolved ahead of the contacts, from the free velocities of the bodies.
   virtual bool resolves_impacts(const Settings &) const { return false; }
   // Returns whether some were left that matter, to be taken as inelastic.
@@ -37,20 +34,6 @@ class Law {
   // step has to be solved again, with what the law has changed; the same on all ranks. `jammed`: of the moving bodies,
   // or empty; contacts of these have no solution, and nothing is changed for them.
   virtual bool displace(State &, std::span<const char> jammed) = 0;
-};
-
-struct LawEntry {
-  int order;
-  std::string_view name;
-  std::string_view title;
-  std::unique_ptr<Law> (*make)();
-};
-
-const std::vector<LawEntry> &laws();
-const LawEntry &find_law(std::string_view name);    // Raises Error naming the choices.
-
-struct RegisterLaw {
-  explicit RegisterLaw(const LawEntry &entry);
 };
 
 }    // namespace nscd

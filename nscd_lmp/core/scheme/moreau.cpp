@@ -47,6 +47,6 @@ class Moreau final : public Law {
 
 }    // namespace
 
-static const RegisterLaw moreau({10, "moreau", "Moreau-Jean", [] { return std::unique_ptr<Law>(new Moreau); }});
+static const RegisterLaw moreau({10, "moreau", "Moreau-Jean", false, [] { return std::unique_ptr<Law>(new Moreau); }});
 
 }    // namespace nscd

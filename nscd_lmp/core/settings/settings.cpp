@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "parallel/team.hpp"
-#include "scheme/law.hpp"
+#include "settings/laws.hpp"
 #include "solver/solver.hpp"
 
 #include <algorithm>
@@ -151,7 +151,7 @@ static void choose_tolerance(Settings &s)
 {
   if (!s.criterion) s.criterion = Stop::natural;
   const bool of_scene = *s.criterion == Stop::natural;
-  const bool looks_ahead = find_law(s.law).make()->looks_ahead();
+  const bool looks_ahead = find_law(s.law).looks_ahead;
   if (of_scene && !s.overlap && looks_ahead) s.overlap = numbers(s).overlap;
   if (!of_scene && s.accuracy)
     fail("accuracy goes with criterion natural: a tol of criterion paper is in m/s, so no word says what it is worth");
@@ -185,7 +185,7 @@ static void check_overlap(const Settings &s)
   if (!s.overlap) return;
   if (!(*s.overlap > 0 && *s.overlap <= 1))
     fail("overlap = ", *s.overlap, " is outside (0, 1]: it is a share of the smaller radius of a contact");
-  if (!find_law(s.law).make()->looks_ahead())
+  if (!find_law(s.law).looks_ahead)
     fail("overlap is a condition of law gap: law ", s.law, " sees contacts only once they overlap");
 }
 

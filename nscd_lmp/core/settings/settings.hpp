@@ -1,6 +1,7 @@
 // What the user chooses, and the checks on it: one place for both doors.
 #pragma once
 
+#include "obstacle/plane.hpp"
 #include "solver/solver.hpp"
 
 #include <limits>
@@ -9,13 +10,6 @@
 #include <vector>
 
 namespace nscd {
-
-// Half-space obstacle: `point` on the plane, `normal` into the free side (any length; made unit by Settings).
-struct Plane {
-  double point[3];
-  double normal[3];
-  std::optional<double> friction{};  // its own coefficient; none: that of the pairs
-};
 
 // Moment of inertia: 2/5 m r^2 of a sphere, 1/2 m r^2 of a disc.
 enum class Inertia { sphere, disc };

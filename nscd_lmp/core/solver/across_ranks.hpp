@@ -15,11 +15,11 @@ class SplitMasses {
  public:
   explicit SplitMasses(Problem &problem) : problem_(problem)
   {
-    if (problem.halo) problem.halo->split(problem);
+    if (problem.halo) problem.halo->split(problem.bodies, problem.contacts);
   }
   ~SplitMasses()
   {
-    if (problem_.halo) problem_.halo->join(problem_);
+    if (problem_.halo) problem_.halo->join(problem_.bodies, problem_.contacts);
   }
   SplitMasses(const SplitMasses &) = delete;
   SplitMasses &operator=(const SplitMasses &) = delete;
@@ -33,9 +33,9 @@ inline Criterion measure_across(Problem &problem, const Goal &goal, const double
 {
   problem.goal = goal;
   if (!problem.halo) return measure(problem, carried);
-  problem.halo->join(problem);
+  problem.halo->join(problem.bodies, problem.contacts);
   const Criterion seen = measure(problem, carried);
-  problem.halo->split(problem);
+  problem.halo->split(problem.bodies, problem.contacts);
   return seen;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/storage.hpp"
+#include "parallel/chunks.hpp"
 #include "problem/problem.hpp"
 #include "solver/across_ranks.hpp"
 

@@ -3,9 +3,10 @@
 #include "base/error.hpp"
 #include "base/hot.hpp"
 #include "problem/closer_look.hpp"
+#include "scene/copies.hpp"
 #include "scene/detection.hpp"
 #include "scene/gather.hpp"
-#include "scene/plane.hpp"
+#include "scene/planar.hpp"
 #include "scene/slides.hpp"
 #include "solver/across_ranks.hpp"
 #include "step/approach_bound.hpp"
@@ -29,9 +30,9 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
     law_(find_law(settings_.law).make()), state_{.settings = settings_, .grains = {}, .dimension = dimension},
     halo_(ranks && ranks->count() > 1 ? std::make_unique<Halo>(*ranks) : nullptr),
     team_(settings_.threads > 1 ? std::make_unique<Team>(settings_.threads) : nullptr),
-    sought_(law_->looks_ahead() && !law_->resolves_impacts(settings_) && !custom_ && solver_->ranks
+    prediction_(law_->prediction(settings_)), look_ahead_(find_law(settings_.law).looks_ahead ? 1 : 0),
+    sought_(looks_ahead() && !law_->resolves_impacts(settings_) && !custom_ && solver_->ranks
                 ? Sought::foreseen : Sought::within_reach),
-    prediction_(law_->prediction(settings_)), look_ahead_(law_->looks_ahead() ? 1 : 0),
     crowding_(nscd::crowding(settings_.threads, ranks))
 {
   state_.halo = halo_.get();
@@ -94,17 +95,17 @@ void Step::prepare(const PairList &pairs)
   });
   if (list_.is_new()) state_.slabs.forget();
   if (halo_ && list_.is_new()) {
-    halo_->plan(state_);
+    plan_copies(state_);
     if (settings_.warmstart) memory_.follow_grains(*halo_, state_.friction.model);
   }
-  belts_.find(state_, law_->looks_ahead());
+  belts_.find(state_, looks_ahead());
   together([&] { largest = gather_owned(state_, prediction_, look_ahead_); });
   grown = drifts_.look(state_, list_.is_new());
   kick2 = largest.kick2, speed2 = largest.speed2, moved = list_.farthest_moved(state_), unlisted = -pairs.reach;
   smallest = -largest.smallest_radius;
   torque = !remarks_.tell_of_torque() && has_unread_torque(state_.grains);
   if (halo_) {
-    halo_->share_motion(state_);
+    share_motion(state_);
     halo_->max(reduced);
   }
   gather_images(state_, prediction_, look_ahead_, {kick2, speed2});
@@ -162,7 +163,7 @@ void Step::share_among_threads(std::size_t contacts)
   shared_among_threads_ = team_ && contacts >= worth_a_thread * std::size_t(team_->size());
   if (!shared_among_threads_) return;
   const bool moved = state_.slabs.order_contacts(state_, contacts);
-  if (moved && halo_) halo_->find_touching(state_);
+  if (moved && halo_) halo_->find_touching(state_.contacts);
 }
 
 // What is given up or accepted, and with friction Newton's law, is kept from making energy; what a custom solver
@@ -180,7 +181,7 @@ void Step::solve_within_energy(const Part &part, EnergyLimit::From from)
     options_.budget = budget;
     return solved;
   };
-  const bool gives_back = law_->looks_ahead() && from == EnergyLimit::From::step;
+  const bool gives_back = looks_ahead() && from == EnergyLimit::From::step;
   if (custom_) solve();
   else energy_limited_ |= energy_limit_.solve(state_, part.contacts, newton, from, gives_back, solve,
                                                 std::ref(go_on));   // as a copy it would be allocated

@@ -86,7 +86,7 @@ class Step {
   const State &state() const { return state_; }
   const Halo *halo() const { return halo_.get(); }
   // What users are to be told of the steps since they were last told.
-  std::vector<std::string> take_remarks() { return remarks_.take(settings_, law_->looks_ahead()); }
+  std::vector<std::string> take_remarks() { return remarks_.take(settings_, looks_ahead()); }
   // What users are to be told of threads without cores of their own; empty if there are none.
   const std::string &crowding() const { return crowding_; }
 
@@ -97,6 +97,7 @@ class Step {
   bool wants_rebuild();
 
  private:
+  bool looks_ahead() const { return look_ahead_ > 0; }
   // How far around q_k contacts are sought, m, for a grain of this speed.
   double longest_move(double speed) const { return state_.dt * speed * (look_ahead_ + prediction_); }
   // Runs `local`, on several ranks so that all fail if one does.
@@ -153,9 +154,9 @@ class Step {
   Workspace workspace_;
   StepReport report_;
   Remarks remarks_;
-  const Sought sought_;            // all pairs within reach where another round costs as much as the first
   const double prediction_;        // contacts are sought at q_k + prediction dt v_k
   const double look_ahead_;        // and this times dt |v| around (0 or 1)
+  const Sought sought_;            // all pairs within reach where another round costs as much as the first
   AlignedVector<Body> free_bodies_;  // as gathered, where impacts may have to be resolved again
   AlignedVector<Vec4> free_spins_;
   bool energy_limited_ = false;    // in this step

@@ -1,6 +1,7 @@
 // The rounds of a step: solve, see where grains go, and go on with the pairs that are driven together.
 #include "step/step.hpp"
 
+#include "scene/copies.hpp"
 #include "scene/slides.hpp"
 #include "step/approach_bound.hpp"
 
@@ -40,7 +41,7 @@ void Step::begin_rounds()
   state_.courses.clear();
   state_.friction.impact_impulse.clear();
   place_slides(state_, 0);
-  if (halo_) halo_->share_contacts(state_);
+  if (halo_) halo_->share_contacts(state_.bodies, state_.contacts);
   if (!law_->resolves_impacts(settings_)) return;
   free_bodies_ = state_.bodies;
   free_spins_ = state_.friction.spins;
@@ -71,7 +72,7 @@ void Step::solve()
     solved = !briefly || sweep_briefly(part, sweeps);
     if (!briefly) solve_within_energy(part, EnergyLimit::From::step);
     calmed_ = !briefly && !report_.converged ? calm_.slow_down(state_, part.contacts) : Calm::Found{};
-    if (halo_) halo_->refresh(state_);
+    if (halo_) refresh_copies(state_);
     differently = law_->displace(state_, calmed_.bodies);
     first = state_.contacts.size();
     grows = promote() || differently;
@@ -92,12 +93,12 @@ bool Step::promote()
   watch_unlisted();
   together([&] {
     watch_farther(state_, *pairs_);
-    if (law_->looks_ahead()) more = promote_near(state_);
+    if (looks_ahead()) more = promote_near(state_);
     else look_at_near(state_);
   });
   if (sum_everywhere(state_, double(more)) == 0) return false;
   place_slides(state_, before);
-  if (halo_) halo_->share_contacts(state_);
+  if (halo_) halo_->share_contacts(state_.bodies, state_.contacts);
   return true;
 }
 

@@ -34,8 +34,8 @@
 //
 // Iterations are faces solved; the sweeps before the first one are not counted.
 #include "base/error.hpp"
-#include "problem/delassus.hpp"
 #include "solver/global/face_minimum.hpp"
+#include "solver/global/on_grains.hpp"
 #include "solver/momentum.hpp"
 
 #include <algorithm>

@@ -31,9 +31,9 @@
 //   many         where solutions are not unique, this one need not be that of sweeps.
 //
 // Iterations are factorisations.
-#include "problem/delassus.hpp"
 #include "solver/global/central_path.hpp"
 #include "solver/global/newton_end.hpp"
+#include "solver/global/on_grains.hpp"
 
 #include <algorithm>
 #include <cmath>

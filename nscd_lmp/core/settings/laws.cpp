@@ -1,4 +1,4 @@
-#include "scheme/law.hpp"
+#include "settings/laws.hpp"
 
 #include "base/registry.hpp"
 

@@ -1,4 +1,4 @@
-#include "scene/plane.hpp"
+#include "scene/planar.hpp"
 
 #include "base/error.hpp"
 

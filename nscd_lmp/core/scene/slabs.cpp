@@ -1,0 +1,100 @@
+#include "scene/slabs.hpp"
+
+#include "scene/contact_geometry.hpp"
+#include "scene/contact_order.hpp"
+
+#include <algorithm>
+
+namespace nscd {
+
+// The longest side of the box round all pairs.
+static int longest_side(const State &s)
+{
+  Vec4 low = s.spheres[s.found[0].atom_i].centre, high = low;
+  for (std::size_t k = 1; k < s.found_count; ++k) {
+    const Vec4 &centre = s.spheres[s.found[k].atom_i].centre;
+    for (int d = 0; d < 3; ++d) {
+      low[d] = std::min(low[d], centre[d]);
+      high[d] = std::max(high[d], centre[d]);
+    }
+  }
+  const Vec4 side = high - low;
+  int axis = 0;
+  for (int d = 1; d < 3; ++d)
+    if (side[d] > side[axis]) axis = d;
+  return axis;
+}
+
+// Slabs of as many pairs each.
+void Slabs::divide(const State &s)
+{
+  if (int(slab_.size()) == s.moving()) return;
+  slab_.assign(s.moving(), 0);
+  if (s.found_count == 0) return;
+  const int axis = longest_side(s);
+  places_.resize(s.found_count);
+  for (std::size_t k = 0; k < s.found_count; ++k) places_[k] = s.spheres[s.found[k].atom_i].centre[axis];
+  std::vector<double> cuts;
+  auto rest = places_.begin();
+  for (int t = 0; t + 1 < threads_; ++t) {
+    const auto cut = places_.begin() + std::ptrdiff_t(s.found_count * std::size_t(t + 1) / std::size_t(threads_));
+    std::nth_element(rest, cut, places_.end());
+    cuts.push_back(*cut);
+    rest = cut;
+  }
+  for (std::size_t atom = 0; atom < s.spheres.size(); ++atom) {
+    const bool own = int(atom) < s.grains.owned;
+    if (!own && s.owner[atom] < s.grains.owned) continue;   // an image of a grain that has its place
+    const double place = s.spheres[atom].centre[axis];
+    slab_[s.owner[atom]] = std::uint8_t(std::upper_bound(cuts.begin(), cuts.end(), place) - cuts.begin());
+  }
+}
+
+template <class PartOf>
+void Slabs::count_parts(std::size_t count, PartOf part_of)
+{
+  sizes_.assign(parts_.count(), 0);
+  for (std::size_t k = 0; k < count; ++k) ++sizes_[part_of(k)];
+  parts_.set_sizes(sizes_);
+  next_.resize(parts_.count());
+  for (int p = 0; p < parts_.count(); ++p) next_[p] = parts_.range(p).first;
+}
+
+void Slabs::order_candidates(State &s)
+{
+  const auto part_of = [&](std::size_t k) {
+    const Candidate &c = s.touching[k];
+    const int slab = of(s.owner[c.atom_i]);
+    return is_wall(c) ? slab : parts_.between(slab, of(s.owner[c.atom_j]));
+  };
+  count_parts(s.touching.size(), part_of);
+  s.ordered.resize(s.touching.size());
+  for (std::size_t k = 0; k < s.touching.size(); ++k) s.ordered[next_[part_of(k)]++] = s.touching[k];
+  s.touching.swap(s.ordered);
+}
+
+int Slabs::part_of_contact(const State &s, std::size_t k) const
+{
+  const Contact &c = s.contacts[k];
+  return c.j >= s.moving() ? of(c.i) : parts_.between(of(c.i), of(c.j));
+}
+
+bool Slabs::order_contacts(State &s, std::size_t count)
+{
+  count_parts(count, [&](std::size_t k) { return part_of_contact(s, k); });
+  bool moved = false;
+  for (int part = 0; part < parts_.count(); ++part) {
+    while (next_[part] < parts_.range(part).last) {
+      const std::size_t k = next_[part];
+      const int own = part_of_contact(s, k);
+      if (own != part) {
+        swap_contacts(s, k, next_[own]);
+        moved = true;
+      }
+      ++next_[own];
+    }
+  }
+  return moved;
+}
+
+}    // namespace nscd
