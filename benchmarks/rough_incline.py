@@ -28,6 +28,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from lammps import lammps
 from numpy.typing import NDArray
+from packing import volume_fraction
 from record import Record, print_table
 
 import nscd_lmp
@@ -38,6 +39,7 @@ State = tuple[Array, Array, Array]
 
 DIAMETER, DENSITY, GRAVITY, FRICTION = 1e-3, 2500.0, 9.81, 0.5
 SIDE, LAYERS = 10, 12  # grains along each side of the base; layers of as many that flow
+AREA, SLAB = (SIDE * DIAMETER) ** 2, (3 * DIAMETER, 9 * DIAMETER)
 ANGLE = np.radians(24)
 MASS = DENSITY * np.pi / 6 * DIAMETER**3
 SPEED = np.sqrt(GRAVITY * DIAMETER)
@@ -119,17 +121,6 @@ def now(lmp: lammps) -> State:
     return x, v, omega
 
 
-def fraction(z: Array, radii: Array) -> float:
-    """Return the volume fraction between the heights of 3 and 9 diameters."""
-
-    def below(height: float) -> float:
-        deep = np.clip(height - (z - radii), 0, 2 * radii)
-        return float((np.pi * deep**2 * (3 * radii - deep) / 3).sum())
-
-    volume = (SIDE * DIAMETER) ** 2 * 6 * DIAMETER
-    return (below(9 * DIAMETER) - below(3 * DIAMETER)) / volume
-
-
 def flow(lmp: lammps, dt: float, seconds: float, radii: Array) -> dict[str, float]:
     """Run for a time and return means over its second half, and processor seconds a second of flow."""
     base, rows = SIDE * SIDE, []
@@ -139,7 +130,8 @@ def flow(lmp: lammps, dt: float, seconds: float, radii: Array) -> dict[str, floa
         for _ in range(SAMPLES):
             lmp.command(f"run {max(1, round(seconds / SAMPLES / dt))} post no")
             x, v, _ = now(lmp)
-            rows.append((v[base:, 0].mean() / SPEED, fraction(x[base:, 2], radii[base:]), (v[base:, 1] ** 2).mean()))
+            filled = volume_fraction(x[base:, 2], radii[base:], AREA, *SLAB)
+            rows.append((v[base:, 0].mean() / SPEED, filled, (v[base:, 1] ** 2).mean()))
     took = time.process_time() - began
     late = np.array(rows[SAMPLES // 2 :])
     blocks = [block[:, 0].mean() for block in np.array_split(late, 5)]

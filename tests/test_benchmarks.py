@@ -94,6 +94,23 @@ FILES = {
         },
         "rough_incline.png": None,
     },
+    "deposits": {
+        "deposits.csv": {
+            "friction",
+            "dt",
+            "seed",
+            "grains",
+            "fraction",
+            "contacts",
+            "rattlers",
+            "speed",
+            "overlap_ratio",
+            "sweeps_per_step",
+            "accepted_steps",
+            "unconverged_steps",
+            "cpu_seconds",
+        }
+    },
     "friction_accuracy": {
         "friction_accuracy.csv": {
             "part",
