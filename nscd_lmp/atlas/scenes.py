@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nscd_lmp.walls import Plane
+from nscd_lmp.door.walls import Plane
 
 Array = NDArray[np.float64]
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from nscd_lmp.choices import SOLVERS
+from nscd_lmp._choices import SOLVERS
 from nscd_lmp.commands._script_run import ScriptError, run_script
 
 DUMP = "dump.sedimentation"
