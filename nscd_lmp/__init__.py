@@ -14,6 +14,7 @@ from nscd_lmp.door.attach import attach
 from nscd_lmp.door.attached import Attached
 from nscd_lmp.door.contact_system import ContactSystem
 from nscd_lmp.door.create import create_grains
+from nscd_lmp.door.scene import scene
 from nscd_lmp.door.walls import Plane
 from nscd_lmp.problems.contact_problem import ContactProblem
 from nscd_lmp.problems.fclib import read_fclib, read_fclib_solution, write_fclib
@@ -38,6 +39,7 @@ __all__ = [
     "create_grains",
     "read_fclib",
     "read_fclib_solution",
+    "scene",
     "solve",
     "sweep",
     "write_fclib",

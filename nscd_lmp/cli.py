@@ -12,9 +12,9 @@ from nscd_lmp import commands
 from nscd_lmp._core import NscdError
 from nscd_lmp._version import __version__
 from nscd_lmp.commands._script_run import ScriptError
+from nscd_lmp.commands._signals import exit_code, signals_heard
 
 EXIT_ERROR = 1
-EXIT_INTERRUPTED = 130
 
 DESCRIPTION = "Hard grains in LAMMPS by nonsmooth contact dynamics (NSCD): scripts run, swept, charted and mapped."
 
@@ -59,16 +59,17 @@ def main(words: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit code: 0, 1 after an error, 130 after Ctrl-C. With a script that ends by LAMMPS' ``quit N`` this
-        does not return: the process ends with code N.
+        Exit code: 0, 1 after an error, 130 after Ctrl-C, 143 after SIGTERM. With a script that ends by LAMMPS'
+        ``quit N`` this does not return: the process ends with code N.
     """
     arguments = new_parser().parse_args(words)
     try:
-        arguments.main(arguments)
+        with signals_heard():
+            arguments.main(arguments)
     except (ScriptError, NscdError, OSError) as error:
         print(f"nscd-lmp: error: {error}", file=sys.stderr)
         return EXIT_ERROR
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as interrupt:
         print("nscd-lmp: interrupted", file=sys.stderr)
-        return EXIT_INTERRUPTED
+        return exit_code(interrupt)
     return 0

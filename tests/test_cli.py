@@ -9,6 +9,7 @@ import time
 from io import StringIO
 from pathlib import Path
 
+import processes
 import pytest
 from rich.console import Console
 
@@ -200,18 +201,19 @@ def test_quit_in_a_script_ends_with_its_code_and_the_table(write_script):
     assert table_value(ended.stdout, "steps") == "5"
 
 
-def test_ctrl_c_ends_the_run_but_not_the_script(write_script):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("way", [list, processes.deaf])
+def test_ctrl_c_ends_the_run_but_not_the_script(write_script, way, number):
     script = write_script("shell touch started\nthermo 1000000\nrun 2000000000\nshell touch last_command")
-    process = subprocess.Popen(
-        [*PROGRAM, "run", script, "--log", "none"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    deadline = time.monotonic() + 60
-    while not Path("started").exists() and time.monotonic() < deadline:
-        time.sleep(0.05)
-    time.sleep(0.3)  # into the run
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
-    assert process.returncode == 130
+    words = way([*PROGRAM, "run", script, "--log", "none"])
+    with processes.started(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        deadline = time.monotonic() + 60
+        while not Path("started").exists() and time.monotonic() < deadline:
+            time.sleep(0.05)
+        time.sleep(0.3)  # into the run
+        process.send_signal(number)
+        out, err = process.communicate(timeout=60)
+    assert process.returncode == 128 + number
     assert "interrupted" in err
     assert 0 < int(table_value(out, "steps")) < 2_000_000_000
     assert Path("last_command").exists()

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import processes
 import pytest
 import ranks_beds
 
@@ -35,10 +36,10 @@ Answers = Callable[[int, str], Any]
 
 def execute(ranks: int, *words: str) -> None:
     """Run a Python program on several ranks; fail with what it printed, or if it hangs."""
-    done = subprocess.run(
-        [Path(sys.prefix) / "bin" / "mpiexec", "-n", str(ranks), sys.executable, *words],
+    done = processes.run(
+        [Path(sys.prefix) / "bin" / "mpiexec", "-n", str(ranks), sys.executable, *words], SECONDS,
         env=os.environ | MPI_ON_ONE_HOST | {"PYTHONPATH": str(TESTS)}, stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=SECONDS, check=False,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
     )  # fmt: skip
     if done.returncode != 0:
         pytest.fail(f"exit status {done.returncode}\n{done.stdout[-3000:]}", pytrace=False)

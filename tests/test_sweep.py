@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import processes
 import pytest
 import sweep_cases
 from test_cli import PROGRAM
@@ -197,17 +198,13 @@ def test_command_tells_what_is_wrong(script, capsys):
         assert told in capsys.readouterr().err
 
 
-def test_command_is_interrupted_by_ctrl_c(script):
-    process = subprocess.Popen(
-        [*PROGRAM, "sweep", script, "--vary", "then=nothing,forever", "--folder", "out"],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
-    try:
+@pytest.mark.parametrize("way", [list, processes.deaf])
+def test_command_is_interrupted_by_ctrl_c(script, way):
+    words = way([*PROGRAM, "sweep", script, "--vary", "then=nothing,forever", "--folder", "out"])
+    with processes.started(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         sweep_cases.wait_for(lambda: Path("out/then=forever/dump.last").exists(), "the second case")
         process.send_signal(signal.SIGINT)
         _, err = process.communicate(timeout=20)
-    finally:
-        process.kill()
     assert process.returncode == 130
     assert "interrupted" in err
     assert len(Path("out/sweep.csv").read_text().splitlines()) == 2

@@ -14,6 +14,7 @@ from nscd_lmp._core import NscdError
 from nscd_lmp.door.attached import Attached
 from nscd_lmp.door.contact_system import ContactSystem
 from nscd_lmp.door.door import Door
+from nscd_lmp.door.scene import walls_of
 from nscd_lmp.door.walls import Plane
 
 PythonSolver = Callable[[ContactSystem], NDArray[np.float64]]
@@ -36,7 +37,7 @@ def attach(
     maxiter: int = 1000,
     warmstart: bool | None = None,
     paper: bool = False,
-    walls: Sequence[Plane] = (),
+    walls: Sequence[Plane] | None = None,
     rho: float | None = None,
     gamma: float | None = None,
     theta: float = 0.5,
@@ -97,7 +98,8 @@ def attach(
     paper : bool
         The settings of Barboteu & Dumont (2017) for what is None above: ``pdas``, ``moreau``, tol 1e-7 m/s, no warm
         start.
-    walls : sequence of Plane
+    walls : sequence of Plane, optional
+        None: those that :func:`nscd_lmp.scene` was given, else none.
     rho, gamma : float, optional
         The solver's parameter as a multiple of 1/W_nn; None for its own default.
     theta : float
@@ -140,7 +142,7 @@ def attach(
         custom = _with_contact_system(solver)
     elif solver is not None:
         keywords += ["solver", solver]
-    for wall in walls:
+    for wall in walls_of(lmp) if walls is None else walls:
         keywords += wall.keywords()
     return Door(lmp, group, keywords, custom, door).attached
 
