@@ -26,6 +26,7 @@ BOTH = pytest.mark.parametrize("door", DOORS)
 LAWS = list(nscd_lmp.LAWS)
 
 
+@pytest.mark.fast
 @pytest.mark.parametrize("boundary", ["f f f", "p p fm", "s s m"])
 @pytest.mark.parametrize("e", [0.0, 0.5])
 @pytest.mark.parametrize("law", LAWS)

@@ -14,6 +14,8 @@ import processes
 import pytest
 from sweep_cases import is_running, wait_for
 
+pytestmark = pytest.mark.fast
+
 SLEEP = ["sleep", "321"]
 # as a test, but of the mark -1: what is left behind is no matter of this session's
 PROGRAM = """

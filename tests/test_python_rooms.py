@@ -6,11 +6,14 @@ import ast
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 import nscd_lmp
+
+pytestmark = pytest.mark.fast
 
 PACKAGE = Path(__file__).parent.parent / "nscd_lmp"
 # From below, those of a line side by side. The last are what users import (``__init__``) and start.
@@ -40,6 +43,7 @@ def modules(package: Path) -> dict[str, ast.Module]:
     return {module_name(path, package): ast.parse(path.read_text(encoding="utf-8")) for path in paths}
 
 
+@cache
 def imports(package: Path) -> list[Edge]:
     """Return all imports within the package: of modules, in functions, and for types alone."""
     parsed = modules(package)

@@ -176,6 +176,7 @@ def test_ranks_find_a_pair_beyond_the_list_together(answers: Answers, door: str)
     assert one["x"][3, 1] - one["x"][2, 1] >= 1.1 - 1e-8
 
 
+@pytest.mark.fast
 @pytest.mark.parametrize("door", DOORS)
 def test_ranks_refuse_together_what_lies_beyond_their_images(answers: Answers, door: str) -> None:
     """One rank has everything; of two, one has no image of the far grain."""

@@ -16,6 +16,8 @@ from test_ranks import execute
 import nscd_lmp
 from nscd_lmp.door.scene import walls_of
 
+pytestmark = pytest.mark.fast
+
 N = 30
 RADIUS, DT = 0.05, 1e-2
 SIDES = nscd_lmp.Plane((-1, 0, 0), (1, 0, 0)), nscd_lmp.Plane((1, 0, 0), (-1, 0, 0))

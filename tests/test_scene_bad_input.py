@@ -12,6 +12,8 @@ from scenes import FLOOR, GRAVITY
 
 import nscd_lmp
 
+pytestmark = pytest.mark.fast
+
 PLACES = [(0, 0, 0.05), (0.001, 0, 1.0), (0, 0.001, 1.2)]  # m
 
 
