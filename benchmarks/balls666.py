@@ -15,7 +15,7 @@ from lammps import lammps
 from numpy.typing import NDArray
 from penetration import Penetration
 
-from nscd_lmp import Plane
+from nscd_lmp import Plane, scene
 
 Array = NDArray[np.float64]
 
@@ -60,41 +60,15 @@ def published(engine: str, variant: Variant, dt: float) -> tuple[float | None, f
 
 def open_balls(variant: Variant, law: str, dt: float, tol: float) -> lammps:
     """Return LAMMPS with the balls under fix nscd, ready to run."""
-    lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
-    lmp.commands_list(
-        [
-            "units si",
-            "atom_style sphere",
-            "boundary f f f",
-            "atom_modify map array sort 0 0.0",
-            "comm_modify vel yes",
-            "region box block -200 200 -200 200 -1 20",  # the floor has no end: no ball gets there in 10 s
-            "create_box 1 box",
-        ]
-    )
-    _place(lmp, variant)
-    lmp.commands_list(
-        [
-            f"pair_style zero {2 * RADIUS + 2 * dt * FASTEST}",
-            "pair_coeff * *",
-            f"neighbor {RADIUS} nsq",  # bins would be costly: few balls in a wide box
-            "neigh_modify every 1 delay 0 check yes",
-            f"timestep {dt}",
-            f"fix gravity all gravity {GRAVITY} vector 0 0 -1",
-            f"fix nscd all nscd law {law} restitution {variant.restitution} criterion paper tol {tol} maxiter 10000"
-            f" unconverged ignore {' '.join(FLOOR.keywords())}",
-        ]
-    )
-    return lmp
-
-
-def _place(lmp: lammps, variant: Variant) -> None:
     grid = np.stack(np.meshgrid(*[SPACING * np.arange(6)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     x = grid + np.random.default_rng(SEED).uniform(0, PLAY, grid.shape) + (0, 0, variant.lowest)
-    n = len(x)
-    lmp.create_atoms(n, list(range(1, n + 1)), [1] * n, x.ravel().tolist(), [0.0] * (3 * n))
-    lmp.numpy.extract_atom("radius")[:n] = RADIUS
-    lmp.numpy.extract_atom("rmass")[:n] = MASS
+    wide = [(-200, 200), (-200, 200), (-1, 20)]  # the floor has no end: no ball gets there in 10 s
+    lmp = scene(x, RADIUS, dt=dt, mass=MASS, box=wide, gravity=GRAVITY, speed=FASTEST, skin=RADIUS)
+    lmp.command(
+        f"fix nscd all nscd law {law} restitution {variant.restitution} criterion paper tol {tol} maxiter 10000"
+        f" unconverged ignore {' '.join(FLOOR.keywords())}"
+    )
+    return lmp
 
 
 def run_balls(variant: Variant, law: str, dt: float, tol: float, duration: float, repeats: int) -> dict[str, Any]:

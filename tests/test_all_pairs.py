@@ -9,6 +9,8 @@ import scenes
 import watched_runs
 from all_pairs import Spheres, largest_overlap
 
+pytestmark = pytest.mark.fast
+
 CUBE = 10 * np.eye(3)
 SLANTED = np.array([[2.0, 0, 0], [0.9, 2.0, 0], [-0.8, 0.7, 2.0]])
 

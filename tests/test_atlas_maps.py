@@ -33,6 +33,7 @@ def test_laws_with_a_rho_carry_equal_balls_at_their_default_and_rest(solver: str
     assert found["outcome"] == "converged" and found["velocity_error"] < 1e-4
 
 
+@pytest.mark.fast
 @pytest.mark.parametrize("solver", ["sbp", "sal"])
 def test_a_rho_far_too_large_is_an_error_that_names_the_remedy(solver: str) -> None:
     found = cell("rho_mass", solver, 1.0, 100.0)
@@ -74,6 +75,7 @@ def test_sweeps_grow_with_the_mass_ratio_only_where_heavy_lies_on_light(ratio: f
     assert below < equal
 
 
+@pytest.mark.fast
 @pytest.mark.parametrize("order", ["heavy_on_light", "light_on_heavy", "in_turn"])
 def test_factorisations_do_not_mind_the_mass_ratio(order: str) -> None:
     for solver in ("active_set", "auto"):
@@ -81,6 +83,7 @@ def test_factorisations_do_not_mind_the_mass_ratio(order: str) -> None:
         assert found["outcome"] == "converged" and found["velocity_error"] < 0.1
 
 
+@pytest.mark.fast
 @pytest.mark.parametrize(("speed", "dt"), [(1.0, 1e-3), (10.0, 1e-3), (100.0, 1e-1)])
 def test_law_gap_lets_nothing_pass_at_any_step(speed: float, dt: float) -> None:
     found = cell("impact_dt", "gap", speed, dt)
@@ -188,6 +191,7 @@ def test_penalty_overlap_falls_with_the_root_of_the_stiffness() -> None:
     assert soft / stiff == pytest.approx(10, rel=0.3)
 
 
+@pytest.mark.fast
 def test_penalty_loses_atoms_beyond_its_step() -> None:
     mass, k = float(grains([(0, 0, 0)], 0.5e-3).mass[0]), 1e4
     assert 5e-5 > 2 * math.sqrt(2 * mass / k)
@@ -212,6 +216,7 @@ def test_a_large_ball_rests_on_small_ones() -> None:
     assert np.sum(np.abs(gap) < 1e-12) == 4 and gap.min() > -1e-12
 
 
+@pytest.mark.fast
 def test_scenes_of_rest_are_at_rest_by_the_active_set() -> None:
     for masses in ([1, 100, 1], [1] * 5):
         assert stacked(masses, solver="active_set").velocity_error < 1e-6

@@ -11,6 +11,8 @@ from scenes import DOORS, FLOOR, GRAVITY, SILENT, Grains, grains, harden, refusa
 
 import nscd_lmp
 
+pytestmark = pytest.mark.fast
+
 BOTH = pytest.mark.parametrize("door", DOORS)
 RADIUS = 0.01
 

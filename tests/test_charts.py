@@ -50,6 +50,7 @@ def impact(tmp_path):
     return run
 
 
+@pytest.mark.fast
 @pytest.mark.parametrize("restitution", [0.2, 0.9])
 @EVERY_METHOD
 def test_every_method_has_the_wanted_restitution(impact, method, restitution):
@@ -91,6 +92,7 @@ def test_solver_without_friction_refuses_it(impact):
         impact("gap/active_set", friction=0.1)
 
 
+@pytest.mark.fast
 def test_methods_are_those_of_the_registries():
     assert set(methods.rigid_methods()) == {f"{law}/{solver}" for law in nscd_lmp.LAWS for solver in nscd_lmp.SOLVERS}
     frictional = {name.partition("/")[2] for name in methods.rigid_methods(friction=True, laws=["gap"])}
@@ -109,6 +111,7 @@ def test_damping_ratio_gives_the_restitution_of_contacts_that_do_not_attract(res
     assert penalty._hertz_impact(z, 0.0)[0] == pytest.approx(restitution, abs=1e-5)
 
 
+@pytest.mark.fast
 def test_hertz_is_as_soft_as_hooke(tmp_path):
     depths = []
     for method in ("granular/hooke", "granular/hertz"):
@@ -121,6 +124,7 @@ def test_hertz_is_as_soft_as_hooke(tmp_path):
     np.testing.assert_allclose(depths, math.sqrt(MASS / 2 / STIFFNESS), rtol=1e-3)
 
 
+@pytest.mark.fast
 def test_overlaps_are_those_of_all_pairs_and_walls():
     random = np.random.default_rng(1)
     x, radius = random.uniform(0, 0.1, (60, 3)), random.uniform(0.005, 0.01, 60)
@@ -147,6 +151,7 @@ def row(method, cost, error, **more):
     return {"method": method, "seconds_per_second": cost, "error": error, "status": "ok", "dt": 1.0} | more
 
 
+@pytest.mark.fast
 def test_pareto_front_and_comparison():
     assert pareto.front([1, 2, 3, 4, 2.5], [5, 3, 4, 1, np.nan]).tolist() == [0, 1, 3]
     rows = [
@@ -198,6 +203,7 @@ def test_picture_of_zeros_failures_and_published_points(tmp_path):
     assert panel.exact and panel.y(0.0) == pytest.approx(1e-4) and panel.y(1e-3) == 1e-3
 
 
+@pytest.mark.fast
 @pytest.mark.parametrize("name", scenes.names())
 def test_every_scene_says_what_it_is(name):
     scene = chart.find_scene(name)
@@ -208,6 +214,7 @@ def test_every_scene_says_what_it_is(name):
     assert all(case["dt"] > 0 for case in [*quick, *full])
 
 
+@pytest.mark.fast
 @pytest.mark.parametrize("name", ["sliding_ball", "bouncing_ball", "oblique_impact", "slide_to_roll"])
 def test_closed_forms_are_run_by_every_method(name):
     found = {case["method"] for case in chart.find_scene(name).cases(Size.FULL)}

@@ -9,6 +9,7 @@ import time
 from io import StringIO
 from pathlib import Path
 
+import processes
 import pytest
 from rich.console import Console
 
@@ -64,6 +65,7 @@ def thermo_rows(log: str) -> list[list[float]]:
     return [[float(word) for word in line.split()] for line in table[1].splitlines()][1:]
 
 
+@pytest.mark.fast
 def test_run_closing_table_agrees_with_thermo_output(write_script, capsys):
     assert cli.main(["run", write_script("run 40"), "--log", "log.test"]) == 0
     shown = capsys.readouterr().out
@@ -87,6 +89,7 @@ def test_run_shares_of_time_add_up(write_script, capsys):
     assert sum(parts) == pytest.approx(float(table_value(shown, "wall time")), abs=0.021)  # four rounded numbers
 
 
+@pytest.mark.fast
 def test_run_sums_over_runs_loops_new_fixes_and_clear(write_script, capsys):
     again = """
 run 10
@@ -162,6 +165,7 @@ def test_run_hands_on_warnings(write_script, capsys):
     assert int(table_value(shown.out, "steps given up")) > 0
 
 
+@pytest.mark.fast
 def test_run_lammps_error_exits_1_and_shows_the_part_before(write_script, capsys):
     assert cli.main(["run", write_script("run 5\nfix wrong all no/such")]) == 1
     shown = capsys.readouterr()
@@ -187,6 +191,7 @@ def test_run_unwritable_log_exits_1(write_script, capsys):
     assert "absent/log" in capsys.readouterr().err
 
 
+@pytest.mark.fast
 @pytest.mark.parametrize("words", [["walk"], [], ["run"], ["demo", "--solver", "nosuch"]])
 def test_wrong_usage_exits_2(words, capsys):
     with pytest.raises(SystemExit) as ended:
@@ -200,18 +205,19 @@ def test_quit_in_a_script_ends_with_its_code_and_the_table(write_script):
     assert table_value(ended.stdout, "steps") == "5"
 
 
-def test_ctrl_c_ends_the_run_but_not_the_script(write_script):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("way", [list, processes.deaf])
+def test_ctrl_c_ends_the_run_but_not_the_script(write_script, way, number):
     script = write_script("shell touch started\nthermo 1000000\nrun 2000000000\nshell touch last_command")
-    process = subprocess.Popen(
-        [*PROGRAM, "run", script, "--log", "none"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    deadline = time.monotonic() + 60
-    while not Path("started").exists() and time.monotonic() < deadline:
-        time.sleep(0.05)
-    time.sleep(0.3)  # into the run
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
-    assert process.returncode == 130
+    words = way([*PROGRAM, "run", script, "--log", "none"])
+    with processes.started(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        deadline = time.monotonic() + 60
+        while not Path("started").exists() and time.monotonic() < deadline:
+            time.sleep(0.05)
+        time.sleep(0.3)  # into the run
+        process.send_signal(number)
+        out, err = process.communicate(timeout=60)
+    assert process.returncode == 128 + number
     assert "interrupted" in err
     assert 0 < int(table_value(out, "steps")) < 2_000_000_000
     assert Path("last_command").exists()
@@ -240,6 +246,7 @@ def test_lines_without_a_terminal(write_script, capsys, monkeypatch):
     assert "━" not in shown
 
 
+@pytest.mark.fast
 def test_info_names_build_doors_solvers_and_laws(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
     assert cli.main(["info"]) == 0
@@ -276,6 +283,7 @@ def test_demo_too_few_grains_exits_1(tmp_path, monkeypatch, capsys):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.fast
 def test_every_command_has_help_within_80_columns(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
     for name in cli.find_commands():

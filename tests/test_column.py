@@ -10,6 +10,8 @@ from scenes import FLOOR, GRAVITY, grains, harden, state
 
 import nscd_lmp
 
+pytestmark = pytest.mark.fast
+
 SOLVERS, LAWS = list(nscd_lmp.SOLVERS), list(nscd_lmp.LAWS)
 RADIUS, DT = 0.5, 1e-3
 

@@ -15,6 +15,8 @@ from scipy.optimize import nnls
 import nscd_lmp
 from nscd_lmp import ContactProblem, NscdError, solve
 
+pytestmark = pytest.mark.fast
+
 SOLVERS = list(nscd_lmp.SOLVERS)
 FRICTIONAL_SOLVERS = list(nscd_lmp.FRICTIONAL_SOLVERS)
 TOL = 1e-11  # of the natural map; what velocities are off is that times the condition number on the active set, < 100

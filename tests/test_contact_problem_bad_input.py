@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from nscd_lmp import ContactProblem, NscdError, solve
 
+pytestmark = pytest.mark.fast
+
 Array = NDArray[np.float64]
 
 

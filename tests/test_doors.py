@@ -13,7 +13,6 @@ from scenes import (
     GRAVITY,
     SILENT,
     SMALL,
-    fill,
     forces,
     grains,
     harden,
@@ -27,6 +26,7 @@ BOTH = pytest.mark.parametrize("door", DOORS)
 LAWS = list(nscd_lmp.LAWS)
 
 
+@pytest.mark.fast
 @pytest.mark.parametrize("boundary", ["f f f", "p p fm", "s s m"])
 @pytest.mark.parametrize("e", [0.0, 0.5])
 @pytest.mark.parametrize("law", LAWS)
@@ -93,7 +93,7 @@ def test_same_input_gives_the_same_bits_in_a_second_instance_and_after_clear(sta
     kept.commands_list(["units si", "atom_style sphere", "boundary f f f", "atom_modify sort 0 0"])
     kept.command(f"region box block -1e-4 {SMALL + 1e-4} -1e-4 {SMALL + 1e-4} -1e-4 {height!r}")
     kept.commands_list(["create_box 1 box", "comm_modify vel yes"])
-    fill(kept, balls)
+    nscd_lmp.create_grains(kept, balls.x, balls.radius, mass=balls.mass)
     kept.commands_list([f"pair_style zero {2 * reach + 2e-4!r}", "pair_coeff * *"])
     kept.commands_list([f"neighbor {0.5 * reach!r} nsq", "neigh_modify every 1 delay 0 check yes"])
     kept.commands_list(["timestep 1e-4", f"fix gravity all gravity {GRAVITY} vector 0 0 -1"])

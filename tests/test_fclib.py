@@ -13,6 +13,8 @@ from scipy import sparse
 
 from nscd_lmp import ContactProblem, NscdError, read_fclib, read_fclib_solution, solve, write_fclib
 
+pytestmark = pytest.mark.fast
+
 h5py = pytest.importorskip("h5py")
 
 GIVEN = contact_problems.bodies(4, 3, 30, 1)

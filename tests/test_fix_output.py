@@ -14,6 +14,8 @@ from scenes import GRAVITY
 
 import nscd_lmp
 
+pytestmark = pytest.mark.fast
+
 RADIUS, MASS, DT = 0.5, 1000.0, 1e-3
 # Five balls stand one on another, one stands alone; the box is theirs, so that every script below can use it.
 SCENE = f"""

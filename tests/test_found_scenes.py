@@ -10,6 +10,8 @@ from scenes import DOORS, FLOOR, GRAVITY, grains, harden, per_atom, state, traje
 
 import nscd_lmp
 
+pytestmark = pytest.mark.fast
+
 BOTH = pytest.mark.parametrize("door", DOORS)
 LAWS = list(nscd_lmp.LAWS)
 RADIUS = 0.05

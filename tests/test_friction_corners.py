@@ -10,6 +10,8 @@ from scenes import DOORS, FLOOR, Grains, grains, harden, state
 
 import nscd_lmp
 
+pytestmark = pytest.mark.fast
+
 BOTH = pytest.mark.parametrize("door", DOORS)
 EVERY_SOLVER = pytest.mark.parametrize("solver", nscd_lmp.FRICTIONAL_SOLVERS)
 EVERY_LAW = pytest.mark.parametrize("law", nscd_lmp.LAWS)

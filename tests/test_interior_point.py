@@ -9,6 +9,8 @@ from contact_problems import bodies, heap, reference
 
 from nscd_lmp import ContactProblem, solve
 
+pytestmark = pytest.mark.fast
+
 TOL = 1e-11  # of the natural map, which is round-off where the last steps are Newton's
 NEAR = 1e-8  # m/s, of velocities of 1 m/s
 

@@ -11,6 +11,8 @@ import pytest
 from numpy.typing import NDArray
 from scenes import DOORS, FLOOR, Grains, grains, harden, refusal, state
 
+pytestmark = pytest.mark.fast
+
 BOTH = pytest.mark.parametrize("door", DOORS)
 
 

@@ -14,6 +14,8 @@ from scenes import FLOOR, GRAVITY, grains, harden, state, trajectory
 
 import nscd_lmp
 
+pytestmark = pytest.mark.fast
+
 SOLVERS, LAWS = list(nscd_lmp.SOLVERS), list(nscd_lmp.LAWS)
 E_VALUES = (0.0, 0.5, 1.0)
 RADIUS = 0.5  # m

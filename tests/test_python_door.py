@@ -8,6 +8,8 @@ from scenes import FLOOR, GRAVITY, box_walls, cloud, energy, grains, harden, sma
 
 import nscd_lmp
 
+pytestmark = pytest.mark.fast
+
 LAWS = list(nscd_lmp.LAWS)
 
 

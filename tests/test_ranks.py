@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import processes
 import pytest
 import ranks_beds
 
@@ -35,10 +36,10 @@ Answers = Callable[[int, str], Any]
 
 def execute(ranks: int, *words: str) -> None:
     """Run a Python program on several ranks; fail with what it printed, or if it hangs."""
-    done = subprocess.run(
-        [Path(sys.prefix) / "bin" / "mpiexec", "-n", str(ranks), sys.executable, *words],
+    done = processes.run(
+        [Path(sys.prefix) / "bin" / "mpiexec", "-n", str(ranks), sys.executable, *words], SECONDS,
         env=os.environ | MPI_ON_ONE_HOST | {"PYTHONPATH": str(TESTS)}, stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=SECONDS, check=False,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
     )  # fmt: skip
     if done.returncode != 0:
         pytest.fail(f"exit status {done.returncode}\n{done.stdout[-3000:]}", pytrace=False)
@@ -175,6 +176,7 @@ def test_ranks_find_a_pair_beyond_the_list_together(answers: Answers, door: str)
     assert one["x"][3, 1] - one["x"][2, 1] >= 1.1 - 1e-8
 
 
+@pytest.mark.fast
 @pytest.mark.parametrize("door", DOORS)
 def test_ranks_refuse_together_what_lies_beyond_their_images(answers: Answers, door: str) -> None:
     """One rank has everything; of two, one has no image of the far grain."""

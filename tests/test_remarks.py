@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 from scenes import DOORS, FLOOR, GRAVITY, grains, harden, start
 
+pytestmark = pytest.mark.fast
+
 R = 0.01  # m
 
 

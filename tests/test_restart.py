@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
 
 import numpy as np
+import processes
 import pytest
 from test_ranks import MPI_ON_ONE_HOST, SECONDS, execute
 
@@ -79,17 +79,14 @@ def test_restart_on_another_number_of_ranks_goes_on_within_the_tolerance(tmp_pat
 
 def killed(folder: Path, ranks: int, when_there_is: str, **blanks: str) -> None:
     """Start FALL on several ranks and kill all of them as soon as there is a file of this name."""
-    run = subprocess.Popen(
-        command(folder, ranks, "never.dump", **blanks), cwd=folder, env=os.environ | MPI_ON_ONE_HOST,
-        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True,
-    )  # fmt: skip
-    give_up = time.monotonic() + SECONDS
-    while not (folder / when_there_is).exists():
-        assert run.poll() is None
-        assert time.monotonic() < give_up
-        time.sleep(0.01)
-    os.killpg(run.pid, signal.SIGKILL)
-    run.wait()
+    quiet = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
+    words = command(folder, ranks, "never.dump", **blanks)
+    with processes.started(words, cwd=folder, env=os.environ | MPI_ON_ONE_HOST, **quiet) as run:
+        give_up = time.monotonic() + SECONDS
+        while not (folder / when_there_is).exists():
+            assert run.poll() is None
+            assert time.monotonic() < give_up
+            time.sleep(0.01)
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from scenes import DOORS, grains, harden, state
 
+pytestmark = pytest.mark.fast
+
 R, DT = 0.05, 1e-3  # m, s
 
 

@@ -10,6 +10,8 @@ from scenes import DOORS, FLOOR, GRAVITY, grains, harden, refusal, state
 
 import nscd_lmp
 
+pytestmark = pytest.mark.fast
+
 BOTH = pytest.mark.parametrize("door", DOORS)
 RADIUS = 0.01
 

@@ -19,10 +19,12 @@ def python_module(*words: str, cwd: Path = ROOT) -> None:
         pytest.fail(done.stdout + done.stderr, pytrace=False)
 
 
+@pytest.mark.fast
 def test_ruff_finds_nothing() -> None:
     python_module("ruff", "check", "--no-cache", "--output-format", "concise")
 
 
+@pytest.mark.fast
 def test_ruff_would_change_nothing() -> None:
     python_module("ruff", "format", "--check", "--no-cache")
 
@@ -48,6 +50,7 @@ def lines() -> list[tuple[str, str]]:
     ]
 
 
+@pytest.mark.fast
 def test_lines_of_cpp_files_have_120_characters_at_most() -> None:
     assert [place for place, line in lines() if len(line) > 120] == []
 
@@ -66,12 +69,14 @@ def hot_functions() -> dict[str, str]:
 
 
 # Compiled for AVX2 they take 32 bytes for granted, which the baseline does not give: a run in Python crashed.
+@pytest.mark.fast
 def test_members_of_vector_type_are_aligned() -> None:
     plain = re.compile(r"^ +(Vec4|Body) \w+(\{[^}]*\})?(, \w+(\{[^}]*\})?)*;")
     assert [place for place, line in lines() if ".hpp:" in place and plain.match(line)] == []
 
 
 # GCC takes them for functions that never throw: an exception that leaves one ends the program.
+@pytest.mark.fast
 def test_hot_functions_raise_no_errors() -> None:
     bodies = hot_functions()
     assert len(bodies) > 20

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import processes
 import pytest
 import sweep_cases
 from test_cli import PROGRAM
@@ -24,6 +25,7 @@ def script(tmp_path, monkeypatch):
     return sweep_cases.begin(tmp_path, monkeypatch)
 
 
+@pytest.mark.fast
 def test_grid_over_a_script_has_a_row_for_each_point_in_order(script):
     table = nscd_lmp.sweep(
         script,
@@ -185,6 +187,7 @@ def test_command_takes_cases_of_a_file_and_functions(capsys):
     assert "line 2 of 'cases.csv'" in capsys.readouterr().err
 
 
+@pytest.mark.fast
 def test_command_tells_what_is_wrong(script, capsys):
     for words, told in (
         (["--vary", "n"], "--vary n is not NAME=VALUE"),
@@ -197,22 +200,19 @@ def test_command_tells_what_is_wrong(script, capsys):
         assert told in capsys.readouterr().err
 
 
-def test_command_is_interrupted_by_ctrl_c(script):
-    process = subprocess.Popen(
-        [*PROGRAM, "sweep", script, "--vary", "then=nothing,forever", "--folder", "out"],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
-    try:
+@pytest.mark.parametrize("way", [list, processes.deaf])
+def test_command_is_interrupted_by_ctrl_c(script, way):
+    words = way([*PROGRAM, "sweep", script, "--vary", "then=nothing,forever", "--folder", "out"])
+    with processes.started(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         sweep_cases.wait_for(lambda: Path("out/then=forever/dump.last").exists(), "the second case")
         process.send_signal(signal.SIGINT)
         _, err = process.communicate(timeout=20)
-    finally:
-        process.kill()
     assert process.returncode == 130
     assert "interrupted" in err
     assert len(Path("out/sweep.csv").read_text().splitlines()) == 2
 
 
+@pytest.mark.fast
 def test_words_of_the_command_line_are_numbers_words_ranges_and_lists():
     assert [read_value(word) for word in ("3", "1e-4", "-2.5", "gap", "e", "1-2")] == [3, 1e-4, -2.5, "gap", "e", "1-2"]
     assert read_range("1e-5:1e-3:3log") == [1e-5, 1e-4, 1e-3]

@@ -93,11 +93,8 @@ def test_folder_of_another_sweep_is_refused(script):
 
 
 def test_two_sweeps_at_once_in_a_folder_are_refused():
-    process = sweep_cases.start_study("1")
-    with pytest.raises(nscd_lmp.NscdError, match="another sweep is at work"):
+    with sweep_cases.study("1"), pytest.raises(nscd_lmp.NscdError, match="another sweep is at work"):
         nscd_lmp.sweep(sweep_cases.counted, {"x": [1]}, folder="out", progress=False)
-    process.kill()
-    process.wait()
 
 
 def test_sweep_on_several_ranks_is_refused():

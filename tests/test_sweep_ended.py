@@ -110,12 +110,12 @@ def test_cases_that_were_killed_or_had_less_time_run_again():
 
 @pytest.mark.parametrize("ranks", ["1", "2"])
 def test_sweep_that_was_killed_leaves_no_process_and_goes_on(ranks):
-    process = sweep_cases.start_study(ranks)
-    sweep_cases.wait_for(lambda: len(list(Path("out/x=4").glob("process.*"))) == int(ranks), "all ranks")
-    cases = [int(path.read_text()) for path in Path("out").glob("*/process.*")]
-    assert sum(map(sweep_cases.is_running, cases)) >= int(ranks)
-    process.kill()
-    process.wait()
+    with sweep_cases.study(ranks) as process:
+        sweep_cases.wait_for(lambda: len(list(Path("out/x=4").glob("process.*"))) == int(ranks), "all ranks")
+        cases = [int(path.read_text()) for path in Path("out").glob("*/process.*")]
+        assert sum(map(sweep_cases.is_running, cases)) >= int(ranks)
+        process.kill()
+        process.wait()
     sweep_cases.wait_for(lambda: not any(map(sweep_cases.is_running, cases)), "the end of the cases", 10)
     before = {name: Path(f"out/x={name}/result.json").stat().st_mtime_ns for name in (1, 2, 3)}
     Path("quick").touch()
@@ -127,9 +127,9 @@ def test_sweep_that_was_killed_leaves_no_process_and_goes_on(ranks):
 
 
 def test_ctrl_c_stops_the_cases_and_keeps_the_finished():
-    process = sweep_cases.start_study("1")
-    process.send_signal(signal.SIGINT)
-    _, err = process.communicate(timeout=20)
+    with sweep_cases.study("1") as process:
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=20)
     assert "KeyboardInterrupt" in err
     assert not any(sweep_cases.is_running(int(path.read_text())) for path in Path("out").glob("*/process.0"))
     assert [line.split(",")[0] for line in Path("out/sweep.csv").read_text().splitlines()] == ["x", "1", "2", "3"]

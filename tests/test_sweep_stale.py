@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import processes
 import pytest
 import sweep_cases
 
@@ -154,10 +155,11 @@ def test_results_that_wait_to_be_replaced_outlive_ctrl_c():
     change("FACTOR * x", "FACTOR * x + 1")
     Path("slow").touch()
     Path("runs").write_text("")
-    process = subprocess.Popen([sys.executable, "study.py", "rerun"], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    sweep_cases.wait_for(lambda: runs() == 1, "the first case")
-    process.send_signal(2)
-    process.communicate(timeout=20)
+    words = [sys.executable, "study.py", "rerun"]
+    with processes.started(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        sweep_cases.wait_for(lambda: runs() == 1, "the first case")
+        process.send_signal(2)
+        process.communicate(timeout=20)
     kept = rows("out/sweep.csv") + rows("out/superseded.csv")
     assert sorted((row["x"], row["estimate"]) for row in kept) == [("1", "2"), ("2", "4"), ("3", "6")]
     assert all("change of estimate" in row["warnings"] for row in kept)

@@ -104,6 +104,7 @@ def test_threads_work_on_each_of_two_ranks(tmp_path: Path) -> None:
     np.testing.assert_allclose(both, one, rtol=0, atol=2e-6)
 
 
+@pytest.mark.fast
 def test_description_tells_the_threads(tmp_path: Path) -> None:
     with pytest.warns(UserWarning, match="threads 64 on"):
         _, hard = attached(steps=1, threads=64)
@@ -121,6 +122,7 @@ def test_threads_without_cores_of_their_own_are_warned_of(tmp_path: Path) -> Non
     assert "threads 2 on 1 core: they will wait for each other" in done.stdout
 
 
+@pytest.mark.fast
 @pytest.mark.parametrize(
     ("threads", "message"), [(0, "threads = 0 is outside [1, 64]"), (65, "threads = 65 is outside [1, 64]")]
 )

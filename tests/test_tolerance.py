@@ -10,6 +10,8 @@ from scenes import DOORS, FLOOR, GRAVITY, cloud, harden, state
 
 import nscd_lmp
 
+pytestmark = pytest.mark.fast
+
 WIDTH = 0.1  # m
 NATURAL: Any = {"criterion": None}  # `harden` leaves such a tol as it is given
 

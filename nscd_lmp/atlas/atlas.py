@@ -6,57 +6,21 @@ import csv
 import hashlib
 import importlib
 import pkgutil
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol, cast
+from typing import Any, cast
 
 from nscd_lmp._core import NscdError
 from nscd_lmp.atlas import maps, outcomes, scenes, trial
 from nscd_lmp.atlas.draw import draw
-from nscd_lmp.atlas.grid import Axis, Cell, Size, cells_of
-from nscd_lmp.sweep import sweep
+from nscd_lmp.atlas.grid import Cell, Size, cells_of
+from nscd_lmp.atlas.map import Map
 from nscd_lmp.sweeps.record import write_text
+from nscd_lmp.sweeps.sweep import sweep
 from nscd_lmp.sweeps.table import SweepTable
 
 CELLS = "cells.csv"  # of a case
 ALL = "all"  # panels in one case
-
-
-class Map(Protocol):
-    """What a module of :mod:`nscd_lmp.atlas.maps` defines.
-
-    Attributes
-    ----------
-    ORDER : int
-        Place in lists.
-    TITLE : str
-        One line.
-    X, Y : Axis
-    PANELS : dict of str
-        Title of each panel by its name.
-    SHOWN : str
-        What the numbers in the cells are.
-    MECHANISM : str
-        Why it fails, in a sentence or two.
-    REMEDY : str
-        What to do.
-    UNSEEN : dict of str
-        By outcome, why no software could know that it is one; empty if all is told.
-    """
-
-    ORDER: int
-    TITLE: str
-    X: Axis
-    Y: Axis
-    PANELS: Mapping[str, str]
-    SHOWN: str
-    MECHANISM: str
-    REMEDY: str
-    UNSEEN: Mapping[str, str]
-
-    def run(self, panel: str, cell: Cell) -> dict[str, Any] | None:
-        """Run a cell and return its columns, ``outcome``, ``shown`` and ``told`` among them; None: no such cell."""
 
 
 @dataclass

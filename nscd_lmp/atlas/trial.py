@@ -12,8 +12,8 @@ import numpy as np
 
 from nscd_lmp.atlas.outcomes import Seen, outcome
 from nscd_lmp.atlas.scenes import GRAVITY, Array, Grains, overlaps, start, state
-from nscd_lmp.door import attach
-from nscd_lmp.walls import Plane
+from nscd_lmp.door.attach import attach
+from nscd_lmp.door.walls import Plane
 
 SPIN = 0.4  # moment of inertia of a sphere over m r^2
 

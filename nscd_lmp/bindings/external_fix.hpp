@@ -27,7 +27,7 @@ struct StatsRow {
 class ExternalFix {
  public:
   // `ranks`: as PythonRanks takes it, and `find_homes` a function of images' places and tags and of owned tags
-  // (nscd_lmp/ghost_homes.py); None on one rank.
+  // (nscd_lmp/door/ghost_homes.py); None on one rank.
   ExternalFix(const Library &library, const std::string &id, int group_bit, const Settings &settings,
               Step::CustomSolver custom, nanobind::object ranks, nanobind::object find_homes);
 

@@ -9,7 +9,7 @@
 
 namespace nscd {
 
-// As nscd_lmp/inspection.py finds it.
+// As nscd_lmp/door/inspection.py finds it.
 struct ListedPairs {
   std::string pair_style;              // whose list is taken: of a hybrid one a sub-style
   double cutoff = 0;                   // pair cutoff plus skin, m, of the pair of types that has the largest

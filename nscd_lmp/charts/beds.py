@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nscd_lmp import Plane
 from nscd_lmp.charts.grains import open_lammps, per_grain
 from nscd_lmp.charts.methods import METHODS, RIGID, Contacts, start
 from nscd_lmp.charts.overlap import Overlaps
 from nscd_lmp.charts.penalty import contact_duration
+from nscd_lmp.door.walls import Plane
 
 Array = NDArray[np.float64]
 

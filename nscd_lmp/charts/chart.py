@@ -10,14 +10,14 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Literal
 
-import nscd_lmp
-from nscd_lmp import NscdError
+from nscd_lmp._core import NscdError
+from nscd_lmp._version import __version__
 from nscd_lmp.charts import scenes
 from nscd_lmp.charts.draw import draw
 from nscd_lmp.charts.pareto import COST, is_number
 from nscd_lmp.charts.size import Size
-from nscd_lmp.sweep import sweep
 from nscd_lmp.sweeps.record import write_text
+from nscd_lmp.sweeps.sweep import sweep
 
 Row = dict[str, Any]
 
@@ -87,7 +87,7 @@ def make(
         stale=stale,
         progress=progress,
     )
-    origin = {"size": size.value, "version": nscd_lmp.__version__, "processor": _processor()}
+    origin = {"size": size.value, "version": __version__, "processor": _processor()}
     rows = []
     for row in swept.rows:
         kept = {key: value for key, value in row.items() if key not in LEFT_OUT}

@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedFormatter, FixedLocator, LogLocator, NullLocator
 
-from nscd_lmp import LAWS, LOCAL_LAWS, SOLVERS
+from nscd_lmp._choices import LAWS, LOCAL_LAWS, SOLVERS
 from nscd_lmp.charts.methods import METHODS, PENALTY, RIGID, Method
 from nscd_lmp.charts.pareto import COST, Row, family, front, is_number, usable
 from nscd_lmp.charts.series import Series, label, make_series

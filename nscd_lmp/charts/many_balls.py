@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nscd_lmp import Plane
 from nscd_lmp.charts.beds import fastest, follow, steps_between_looks
 from nscd_lmp.charts.grains import open_lammps, per_grain
 from nscd_lmp.charts.methods import Contacts, start
 from nscd_lmp.charts.overlap import Overlaps
 from nscd_lmp.charts.sedimentations import costs
+from nscd_lmp.door.walls import Plane
 
 SOURCE = "Kang & Hwangbo, SimBenchmark (2018), Intel i7-7700HQ"
 RADIUS, MASS, SPACING, PLAY, GRAVITY = 0.1, 10.0, 0.21, 1e-3, 9.81  # m, kg, m, m, m/s^2

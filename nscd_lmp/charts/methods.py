@@ -13,8 +13,11 @@ from typing import Any, Literal
 
 import numpy as np
 
-from nscd_lmp import LAWS, SOLVERS, NscdError, Plane, _core
+from nscd_lmp import _core
+from nscd_lmp._choices import LAWS, SOLVERS
+from nscd_lmp._core import NscdError
 from nscd_lmp.charts import penalty
+from nscd_lmp.door.walls import Plane
 
 RIGID, PENALTY = "rigid", "penalty"
 FIX = "nscd"

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from nscd_lmp import Plane
 from nscd_lmp.charts.grains import per_grain
 from nscd_lmp.charts.methods import Contacts
+from nscd_lmp.door.walls import Plane
 
 Array = NDArray[np.float64]
 

@@ -16,7 +16,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from nscd_lmp import NscdError, Plane
+from nscd_lmp._core import NscdError
+from nscd_lmp.door.walls import Plane
 
 Friction = float | Literal["stick"]
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from nscd_lmp import SOLVERS
+from nscd_lmp._choices import SOLVERS
 from nscd_lmp.charts.methods import METHODS, RIGID, Method
 from nscd_lmp.charts.pareto import COST, Row, is_number
 

@@ -14,6 +14,7 @@ from rich.console import Console
 from nscd_lmp.commands._closing_table import closing_table
 from nscd_lmp.commands._progress import Counts, NoWatch, RunBar, RunLines, zeroed_counts
 from nscd_lmp.commands._quit import at_quit
+from nscd_lmp.commands._signals import exit_code
 
 SECONDS_BETWEEN_LOOKS = 0.1
 
@@ -43,7 +44,7 @@ def run_script(
     ScriptError
         There is no such script, or LAMMPS stopped with an error.
     KeyboardInterrupt
-        Ctrl-C was pressed; the run was ended after a whole step.
+        Ctrl-C was pressed, or SIGTERM came; the run was ended after a whole step.
     """
     if not script.is_file():
         raise ScriptError(f"there is no script '{script}' in {Path.cwd()}: give the path of an existing file")
@@ -57,8 +58,8 @@ def run_script(
         run.report()
     if run.failure:
         raise ScriptError(run.failure)
-    if run.interrupted:
-        raise KeyboardInterrupt
+    if run.interrupt:
+        raise run.interrupt
 
 
 class _ScriptRun:
@@ -75,7 +76,7 @@ class _ScriptRun:
         self.counts = Counts()  # zeros, until LAMMPS has loaded the plugin
         self.ended = threading.Event()  # Thread.join takes a thread for ended when Ctrl-C interrupts it
         self.failure = ""
-        self.interrupted = False
+        self.interrupt: KeyboardInterrupt | None = None
         self.started_at = time.monotonic()
 
     def watch(self) -> None:
@@ -88,8 +89,8 @@ class _ScriptRun:
                 try:
                     self.ended.wait(SECONDS_BETWEEN_LOOKS)
                     watch.show(self.counts)
-                except KeyboardInterrupt:
-                    self.interrupt()
+                except KeyboardInterrupt as interrupt:
+                    self.stop(interrupt)
             watch.show(self.counts)
 
     def work(self) -> None:
@@ -113,12 +114,12 @@ class _ScriptRun:
                 self.lmp.close()
             self.ended.set()
 
-    def interrupt(self) -> None:
+    def stop(self, interrupt: KeyboardInterrupt) -> None:
         """Have LAMMPS end this run and all later ones after a whole step; the second time end the process."""
-        if self.interrupted:
+        if self.interrupt:
             self.console.show_cursor(True)
-            os._exit(130)
-        self.interrupted = True
+            os._exit(exit_code(interrupt))
+        self.interrupt = interrupt
         if self.lmp:
             self.lmp.force_timeout()
         self.console.print("stopping after this step; Ctrl-C again ends the program at once")

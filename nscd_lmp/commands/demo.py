@@ -17,7 +17,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from nscd_lmp.choices import SOLVERS
+from nscd_lmp._choices import SOLVERS
 from nscd_lmp.commands._script_run import ScriptError, run_script
 
 DUMP = "dump.sedimentation"
@@ -92,10 +92,15 @@ def _draw(analysis: Path, width: float) -> dict[str, str]:
     for script, words in options.items():
         command = [sys.executable, str(analysis / f"{script}.py"), DUMP, "-o", f"{script}.png", *words]
         running[script] = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-    for script, process in running.items():
-        _, errors = process.communicate()
-        if process.returncode != 0:
-            raise ScriptError(f"{script}.py ended with code {process.returncode}: {errors.strip()}")
+    try:
+        for script, process in running.items():
+            _, errors = process.communicate()
+            if process.returncode != 0:
+                raise ScriptError(f"{script}.py ended with code {process.returncode}: {errors.strip()}")
+    finally:
+        for process in running.values():  # those that still run when one failed, or Ctrl-C came
+            process.kill()
+            process.wait()
     return {script.replace("_", " "): f"{script}.png" for script in options}
 
 

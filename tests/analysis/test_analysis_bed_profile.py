@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from bed_profile import Container, compute_bed_height, compute_container, compute_profile
 
+pytestmark = pytest.mark.fast
+
 
 def test_simple_cubic_fills_pi_over_6(simple_cubic):
     x, radius, bounds = simple_cubic

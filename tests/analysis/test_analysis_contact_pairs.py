@@ -9,6 +9,8 @@ import pytest
 from contact_pairs import find_grain_contacts, find_wall_contacts
 from coordination import compute_coordination
 
+pytestmark = pytest.mark.fast
+
 EVERYWHERE, NOWHERE = np.ones(3, dtype=bool), np.zeros(3, dtype=bool)
 
 

@@ -7,6 +7,8 @@ import pytest
 from kinetic_energy import compute_energy_history, compute_rotational_energy
 from packing import Packing
 
+pytestmark = pytest.mark.fast
+
 GRAVITY = 9.81
 LAMMPS_INPUT = """
 units si

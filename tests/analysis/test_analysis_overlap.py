@@ -8,6 +8,8 @@ from contact_pairs import find_wall_contacts
 from overlap import compute_overlap_history, compute_overlaps, compute_resolution
 from packing import Packing
 
+pytestmark = pytest.mark.fast
+
 NOWHERE = np.zeros(3, dtype=bool)
 
 

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from packing import Packing, position_digits
 
+pytestmark = pytest.mark.fast
+
 X = np.array([[0.1, 0.2, 0.3], [0.4, 0.5, 0.6 + 1e-12]])
 FRAME = {"x": X, "radius": [0.05, 0.06]}
 

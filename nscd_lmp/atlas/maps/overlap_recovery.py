@@ -8,7 +8,7 @@ from nscd_lmp.atlas.grid import Axis, Cell
 from nscd_lmp.atlas.maps._carried import GRAIN
 from nscd_lmp.atlas.scenes import FLOOR, GRAVITY, column
 from nscd_lmp.atlas.trial import Look, hard, row, tiny
-from nscd_lmp.walls import Plane
+from nscd_lmp.door.walls import Plane
 
 ORDER = 80
 TITLE = "Overlapping starts x recovery: law gap, 0.5 s, dt = 1 ms, criterion natural"

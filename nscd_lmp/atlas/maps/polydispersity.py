@@ -9,7 +9,7 @@ from nscd_lmp.atlas.grid import Axis, Cell
 from nscd_lmp.atlas.outcomes import BUDGET
 from nscd_lmp.atlas.scenes import Grains, grains, sides, start, state
 from nscd_lmp.atlas.trial import AT_REST, Look, count, hard, row
-from nscd_lmp.door import attach
+from nscd_lmp.door.attach import attach
 
 ORDER = 100
 TITLE = "Size ratio x solver: one step from no impulses"

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nscd_lmp import Plane
 from nscd_lmp.charts.cases import Case, penalty_cases, rigid_cases
 from nscd_lmp.charts.grains import open_lammps, per_grain
 from nscd_lmp.charts.methods import METHODS, RIGID, Contacts, penalty_methods, rigid_methods, start
 from nscd_lmp.charts.overlap import Overlaps
 from nscd_lmp.charts.size import Size
+from nscd_lmp.door.walls import Plane
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from nscd_lmp import Plane
 from nscd_lmp.charts.beds import DENSITY, Scene, Watch, fastest, follow, loose_cloud, steps_between_looks
 from nscd_lmp.charts.cases import penalty_cases, rigid_cases
 from nscd_lmp.charts.grains import per_grain
@@ -16,6 +15,7 @@ from nscd_lmp.charts.methods import rigid_methods
 from nscd_lmp.charts.references import Arrays, kept
 from nscd_lmp.charts.sedimentations import costs
 from nscd_lmp.charts.size import Size
+from nscd_lmp.door.walls import Plane
 
 ORDER = 60
 TITLE = "500 balls on a plane inclined by 10 degrees, friction on the plane alone"

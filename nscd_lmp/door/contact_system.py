@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nscd_lmp.contact_problem import ContactProblem
+from nscd_lmp.problems.contact_problem import ContactProblem
 
 
 @dataclass(frozen=True)

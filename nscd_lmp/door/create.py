@@ -1,7 +1,7 @@
 """Grains from arrays, all of them or none, with the masses and radii that were meant."""
 
 import math
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from nscd_lmp._core import NscdError
 
 MASS = "rmass"  # LAMMPS' name
+ABOVE_0 = ("radius", "mass", "density")
 
 
 def create_grains(
@@ -20,7 +21,7 @@ def create_grains(
     density: ArrayLike | None = None,
     v: ArrayLike = 0.0,
     omega: ArrayLike = 0.0,
-    type: int = 1,
+    type: ArrayLike = 1,
 ) -> NDArray[np.int64]:
     """Create spheres in a LAMMPS instance that has a box.
 
@@ -37,8 +38,8 @@ def create_grains(
         Give mass or density, that of a solid sphere.
     v, omega : array_like, (n, 3), or a number
         Velocities, and angular velocities in rad/s.
-    type : int
-        Atom type of all.
+    type : array_like, (n,) or a number
+        Atom types; the box must have them.
 
     Returns
     -------
@@ -48,27 +49,26 @@ def create_grains(
     Raises
     ------
     NscdError
-        Neither mass nor density, or both; numbers that are not finite, radii or masses that are not above 0; grains
-        that are not inside the box. No grain has been made then.
+        Neither mass nor density, or both; shapes that do not match; numbers that are not finite, radii, masses or
+        densities that are not above 0; grains that are not inside the box. No grain has been made then.
     """
     place = np.array(x, dtype=float).reshape(-1, 3)
     n = len(place)
-    size = np.array(np.broadcast_to(np.asarray(radius, dtype=float), n))
+    size = per_grain_rows("radius", radius, n)
     if (mass is None) == (density is None):
         raise NscdError("give the mass of the grains, or their density: one of the two")
-    weight = np.array(mass, dtype=float) if density is None else np.array(density) * (4 / 3 * math.pi) * size**3
-    values = {"radius": size, MASS: np.array(np.broadcast_to(weight, n))}
-    values |= {
-        name: np.array(np.broadcast_to(np.asarray(rates, dtype=float), (n, 3)))
-        for name, rates in (("v", v), ("omega", omega))
-    }
-    _check(place, values)
+    heavy = {"mass": mass} if mass is not None else {"density": density}
+    values = {name: per_grain_rows(name, cast(ArrayLike, given), n) for name, given in heavy.items()} | {"radius": size}
+    values |= {name: per_grain_rows(name, rates, n, 3) for name, rates in (("v", v), ("omega", omega))}
+    check_numbers(place, values)
+    values[MASS] = values.pop("mass") if mass is not None else values.pop("density") * (4 / 3 * math.pi) * size**3
+    types = per_grain_rows("type", type, n).astype(int).tolist()
     if lmp.extract_setting("radius_flag") != 1:
         raise NscdError("atoms have no radius: use atom_style sphere")
     comm = lmp.get_mpi_comm() if lmp.extract_setting("world_size") > 1 else None
     first = 1 + max(comm.allgather(_last(lmp)) if comm else [_last(lmp)])
     ids = np.arange(first, first + n)
-    lmp.create_atoms(n, ids.tolist(), [type] * n, place.ravel().tolist(), shrinkexceed=True)
+    lmp.create_atoms(n, ids.tolist(), types, place.ravel().tolist(), shrinkexceed=True)
     owned = lmp.extract_setting("nlocal")
     tags = lmp.numpy.extract_atom("id")[:owned] if owned else np.zeros(0, int)
     here = np.flatnonzero(tags >= first)
@@ -80,16 +80,27 @@ def create_grains(
     return ids
 
 
-def _check(x: NDArray[np.float64], values: dict[str, NDArray[np.float64]]) -> None:
+def per_grain_rows(name: str, given: ArrayLike, n: int, width: int | None = None) -> NDArray[np.float64]:
+    """Return what was given as a row for each grain, (n,) or (n, width); a number or one row is that of all."""
+    values = np.array(given, dtype=float)
+    shape = (n,) if width is None else (n, width)
+    try:
+        return np.array(np.broadcast_to(values, shape))
+    except ValueError:
+        one = "a number" if width is None else f"{width} numbers"
+        raise NscdError(f"{name} has the shape {values.shape} for {n} grains: it must be {shape}, or {one}") from None
+
+
+def check_numbers(x: NDArray[np.float64], values: dict[str, NDArray[np.float64]]) -> None:
+    """Raise for numbers of a grain that are not finite, radii and masses that are not above 0."""
     for name, numbers in {"x": x, **values}.items():
         wrong = ~np.isfinite(numbers.reshape(len(x), -1)).all(axis=1)
-        if name in ("radius", MASS):
+        if name in ABOVE_0:
             wrong |= ~(numbers > 0)
         if wrong.any():
             k = int(np.argmax(wrong))
-            shown = "mass" if name == MASS else name
-            above = " above 0" if name in ("radius", MASS) else ""
-            raise NscdError(f"grain {k} has {shown} = {numbers[k]}: it must be of finite numbers{above}")
+            above = " above 0" if name in ABOVE_0 else ""
+            raise NscdError(f"grain {k} has {name} = {numbers[k]}: it must be of finite numbers{above}")
 
 
 def _last(lmp: Any) -> int:

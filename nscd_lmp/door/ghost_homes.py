@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nscd_lmp.ranks import Ranks
+from nscd_lmp.door.ranks import Ranks
 
 MARGIN = 1e-9  # of the box' edge: round-off at the faces between two parts
 

@@ -9,10 +9,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nscd_lmp import _core, problem_checks
-from nscd_lmp.choices import SOLVERS
-from nscd_lmp.contact_problem import ContactProblem
-from nscd_lmp.problem_checks import BlockRows, Floats
+from nscd_lmp import _core
+from nscd_lmp._choices import SOLVERS
+from nscd_lmp.problems import checks
+from nscd_lmp.problems.checks import BlockRows, Floats
+from nscd_lmp.problems.contact_problem import ContactProblem
 
 COLUMNS = ("iterations", "criterion", "motion", "bipotential", "penetration", "relative_residual")
 HISTORY_DTYPE = np.dtype([(name, "i8" if name == "iterations" else "f8") for name in COLUMNS])
@@ -201,7 +202,7 @@ def _start(problem: ContactProblem, warmstart: ArrayLike | Solution | None) -> F
     shape = (len(problem), problem.dim)
     if warmstart is None:
         return np.zeros(shape)
-    start = problem_checks.floats("warmstart", warmstart.impulse if isinstance(warmstart, Solution) else warmstart)
+    start = checks.floats("warmstart", warmstart.impulse if isinstance(warmstart, Solution) else warmstart)
     if start.shape not in (shape, problem.q.shape):
         raise _core.NscdError(
             f"warmstart has the shape {start.shape} and must be {problem.q.shape}, one impulse for each contact"

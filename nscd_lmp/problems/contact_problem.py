@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from nscd_lmp import problem_checks as checks
 from nscd_lmp._core import NscdError
-from nscd_lmp.problem_checks import BlockRows, Floats
+from nscd_lmp.problems import checks
+from nscd_lmp.problems.checks import BlockRows, Floats
 
 
 @dataclass(frozen=True)

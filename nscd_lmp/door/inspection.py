@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from nscd_lmp._core import NscdError
-from nscd_lmp.ranks import Ranks
+from nscd_lmp.door.ranks import Ranks
 
 # Styles that advance positions, to be named before the run; whatever else does is found by the step, which looks at
 # where grains are.

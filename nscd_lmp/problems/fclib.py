@@ -22,9 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nscd_lmp._core import NscdError
-from nscd_lmp.contact_problem import ContactProblem
-from nscd_lmp.problem_checks import Floats
-from nscd_lmp.solve import Solution
+from nscd_lmp.problems.checks import Floats
+from nscd_lmp.problems.contact_problem import ContactProblem
+from nscd_lmp.problems.solve import Solution
 
 AnyPath = str | os.PathLike[str]
 LARGEST_INDEX = 2**31 - 1
