@@ -67,6 +67,9 @@ class Gap final : public Law {
 
 }    // namespace
 
-static const RegisterLaw gap({20, "gap", "gap", [] { return std::unique_ptr<Law>(new Gap); }});
+static const RegisterLaw gap({.order = 20,
+                              .name = "gap",
+                              .title = "gap",
+                              .make = [] { return std::unique_ptr<Law>(new Gap); }});
 
 }    // namespace nscd

@@ -5,6 +5,7 @@
 
 namespace nscd {
 
-static const RegisterSolver pdas(local_law<Pdas>(50, "pdas", "PDAS", "gamma", 1.0));
+static const RegisterSolver pdas(local_law<Pdas>(
+    {.order = 50, .name = "pdas", .title = "PDAS", .parameter = "gamma", .default_parameter = 1.0}));
 
 }    // namespace nscd
