@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import signal
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
+import core_programs
 import processes
 import pytest
 import scenes
@@ -78,3 +80,11 @@ def sedimentation() -> Iterator[Callable[..., Any]]:
     yield begin
     for lmp in opened:
         lmp.close()
+
+
+@pytest.fixture(scope="session")
+def build_folder(request: pytest.FixtureRequest) -> Callable[[str], Path]:
+    """Return a function that names a build folder, kept in pytest's cache: a second run compiles little."""
+    if not any(core_programs.tool(compiler) for compiler in ("c++", "g++", "clang++")):
+        pytest.skip("there is no C++ compiler")
+    return lambda name: request.config.cache.mkdir(name)

@@ -1,7 +1,7 @@
-"""Every code block of README.md and docs/*.md runs: a page's blocks in their order, in one empty folder.
+"""Every code block of README.md and docs/ runs: a page's blocks in their order, in one empty folder.
 
-``python`` blocks run as scripts, ``bash`` blocks under ``bash -eu``, ``lammps`` blocks as input of ``lmp``;
-blocks in other languages, or in none, are text. An HTML comment on the line before a block can say otherwise:
+``python`` blocks run as scripts, ``bash`` blocks under ``bash -eu``, ``lammps`` blocks as input of ``lmp``; those in
+``cpp`` are for test_recipes.py; others are text. An HTML comment on the line before a block can say otherwise:
 ``<!-- not run: reason -->``, or ``<!-- command: name -->``, which marks README's two command lines.
 """
 
@@ -12,38 +12,20 @@ import re
 import subprocess
 import sys
 import sysconfig
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from pages import PAGES, README, Block, blocks, prose, title
+
+import nscd_lmp
 
 ROOT = Path(__file__).parent.parent
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 BESIDE = ("inputs", "analysis", "benchmarks")  # folders that blocks may name, linked into theirs
 COMMANDS = {
     "python": (sys.executable, "block.python"),
     "bash": ("bash", "-euo", "pipefail", "block.bash"),
     "lammps": ("lmp", "-in", "block.lammps"),
 }
-BLOCK = re.compile(
-    r"^(?:<!-- (?P<mark>[\w ]+): (?P<reason>.+?) -->\n+)?```(?P<language>\w*)[^\n]*\n(?P<text>.*?)^```$",
-    re.M | re.S,
-)
-
-
-@dataclass
-class Block:
-    line: int
-    mark: str | None
-    reason: str | None
-    language: str
-    text: str
-
-
-def blocks(page: Path) -> list[Block]:
-    """Return the fenced code blocks of a page."""
-    text = page.read_text()
-    return [Block(text.count("\n", 0, found.start()) + 1, **found.groupdict()) for found in BLOCK.finditer(text)]
 
 
 def run(block: Block, folder: Path, where: str) -> None:
@@ -59,33 +41,33 @@ def run(block: Block, folder: Path, where: str) -> None:
         pytest.fail(f"{where}: exit status {done.returncode}\n{block.text}\n{done.stdout[-3000:]}", pytrace=False)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", PAGES, ids=title)
 def test_blocks_run(page: Path, tmp_path: Path) -> None:
     for name in BESIDE:
         if (ROOT / name).is_dir():
             (tmp_path / name).symlink_to(ROOT / name)
     for block in blocks(page):
         if block.mark is None and block.language in COMMANDS:
-            run(block, tmp_path, f"{page.name}, block at line {block.line}")
+            run(block, tmp_path, f"{title(page)}, block at line {block.line}")
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", PAGES, ids=title)
 def test_marks_of_blocks_are_known(page: Path) -> None:
-    assert {block.mark for block in blocks(page)} <= {None, "not run", "command"}
+    assert {block.mark for block in blocks(page)} <= {None, "not run", "not built", "command"}
     # A fence that is not closed, or indented, would hide its block from this file.
     assert page.read_text().count("```") == 2 * len(blocks(page))
 
 
 def command(name: str) -> str:
     """Return one of README's command lines."""
-    found = [block for block in blocks(PAGES[0]) if (block.mark, block.reason) == ("command", name)]
+    found = [block for block in blocks(README) if (block.mark, block.reason) == ("command", name)]
     assert len(found) == 1 and found[0].language == "bash" and found[0].text.count("\n") == 1
     return found[0].text.strip()
 
 
 def test_readme_opens_with_the_two_commands() -> None:
     """They differ in what they install and in what they run at the end; .ci/run proves the second."""
-    first, second = blocks(PAGES[0])[:2]
+    first, second = blocks(README)[:2]
     assert (first.text.strip(), second.text.strip()) == (command("demo"), command("test"))
     *install, _ = command("demo").split(" && ")
     *install_tests, pytest_line = command("test").split(" && ")
@@ -96,10 +78,10 @@ def test_readme_opens_with_the_two_commands() -> None:
 def test_readme_demo_runs(tmp_path: Path) -> None:
     """What the first command line runs once everything is set up."""
     last = command("demo").split(" && ")[-1].replace(".venv/bin/", "")
-    run(Block(0, None, None, "bash", last), tmp_path, "README.md, command demo")
+    run(Block(0, None, None, "bash", last, ""), tmp_path, "README.md, command demo")
     assert list(tmp_path.rglob("*.png")), "no picture"
     (log,) = tmp_path.rglob("log.sedimentation")
-    assert "WARNING" not in log.read_text()
+    assert "WARNING" not in log.read_text()  # an example that a newcomer runs first is right by our own lights
 
 
 def test_ci_runs_the_second_command(tmp_path: Path) -> None:
@@ -115,3 +97,44 @@ def test_ci_runs_the_second_command(tmp_path: Path) -> None:
         assert done.stdout.splitlines()[-1] == "last"
     (tmp_path / "README.md").write_text("no commands\n")
     assert subprocess.run(["bash", str(script)], capture_output=True).returncode != 0
+
+
+def anchors(page: Path) -> set[str]:
+    """Return the names by which links reach places of a page: of its headings, as GitHub makes them, and its own."""
+    headings = re.findall(r"^#+ (.+)$", prose(page), re.M)
+    own = re.findall(r'<a id="([^"]+)">', prose(page))
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings} | set(own)
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md"], ids=title)
+def test_links_lead_somewhere(page: Path) -> None:
+    dead = []
+    for link in re.findall(r"\]\(([^()\s]+)\)", prose(page)):
+        place, _, heading = link.partition("#")
+        target = page.parent / place if place else page
+        if "://" not in link and not (target.exists() and (not heading or heading in anchors(target))):
+            dead.append(link)
+    assert dead == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=title)
+def test_what_is_called_the_default_is_it(page: Path) -> None:
+    """Of solvers and contact laws: names before "(default)" in a line."""
+    _, _, defaults = (ROOT / "docs" / "fix_nscd.md").read_text().partition("The defaults are ")
+    words = dict(re.findall(r"(\w+) = (\w+)", defaults))
+    called = [
+        name
+        for line in prose(page).splitlines()
+        if "(default)" in line
+        for name in re.findall(r"`(?:solver |law )?(\w+)`", line.partition("(default)")[0])
+        if name in nscd_lmp.SOLVERS or name in nscd_lmp.LAWS
+    ]
+    assert set(called) <= {words["solver"], words["law"]}
+
+
+def test_compilers_that_readme_promises_are_tested() -> None:
+    """GCC is Debian's default, and clang is what .ci/run brings."""
+    (promise,) = re.findall(r"Needed are [^.]*\.\d+[^.]*\.", README.read_text())
+    assert all(name in promise for name in ("Linux", "GCC", "clang"))
+    assert "clang" in re.findall(r"packages=\(.*\)", (ROOT / ".ci" / "run").read_text())[0]
+    assert "Operating System :: POSIX :: Linux" in (ROOT / "pyproject.toml").read_text()

@@ -187,10 +187,13 @@ def test_sliding_into_rolling_takes_one_part_in_kappa_of_the_energy(start, solve
     walls = [nscd_lmp.Plane((0, 0, 0), frame[1])]
     attached = harden(lmp, law=law, solver=solver, friction=0.5, inertia=kind.inertia, walls=walls, **SOLVED)
     lmp.command("run 100")
-    if solver == "interior_point" and (attached.stats["contacts"] == 0).any():
-        pytest.xfail("it ends with u_n of up to tol, which lifts the ball past its overlap of 1e-15 m for a step")
+    # u_n of up to tol may lift the ball past its overlap of 1e-15 m: law moreau then lets it fall for a step, and the
+    # next one takes p |u_k| / 2 with p = 2 m g dt
+    falls = (attached.stats["contacts"] == 0).sum()
+    assert falls <= (solver == "interior_point" and law == "moreau")
     lost = 0.5 * mass / kind.kappa
-    assert attached.stats["dissipated_energy"][-1] == pytest.approx(lost, abs=100 * STEP_ERROR * mass)
+    taken = lost + falls * mass * (GRAVITY * DT) ** 2
+    assert attached.stats["dissipated_energy"][-1] == pytest.approx(taken, abs=100 * STEP_ERROR * mass)
     left = kinetic(balls, kind.k, state(lmp)[1], per_atom(lmp, "omega"))
     assert left == pytest.approx(0.5 * mass - lost, abs=100 * STEP_ERROR * mass)
 

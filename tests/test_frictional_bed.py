@@ -32,6 +32,8 @@ EVERY_DIMENSION = pytest.mark.parametrize("dim", [2, 3])
 # m/s. The reference is right to 1e-11, NLGS ends at tol, 1e-12, times the sweeps it needs for a decade, 1e2 to 1e3.
 # Found are 1e-11 and less; impacts in a row (law gap, e > 0) pass errors on.
 AGREE = 1e-9
+# Where the central path of interior_point folds before the solution, which the step says: law, dimension, scene.
+FOLDS = {("moreau", 2, "rest"), ("gap", 2, "rest"), ("gap", 3, "rest")}
 
 
 @pytest.fixture(scope="module")
@@ -66,10 +68,10 @@ def test_velocities_of_a_shaken_bed_are_those_of_the_reference(
         references[key], attached = one_step(start, balls, dim, solver=reference(systems), **options)
         check_kinds(systems, len(balls))
     velocity, attached = one_step(start, balls, dim, solver=solver, **options)
-    if solver == "interior_point" and attached.stats["unconverged_steps"][0]:
-        pytest.xfail("the central path folds before the solution, and the step is reported as unconverged")
-    assert attached.stats["unconverged_steps"][0] == 0
-    np.testing.assert_allclose(velocity, references[key], rtol=0, atol=AGREE)
+    folds = solver == "interior_point" and (law, dim, scene) in FOLDS
+    assert attached.stats["unconverged_steps"][0] == folds
+    if not folds:
+        np.testing.assert_allclose(velocity, references[key], rtol=0, atol=AGREE)
 
 
 def check_kinds(systems, grains):
@@ -142,8 +144,7 @@ def test_turned_bed_moves_turned(start, beds, solver, angle):
         balls, matrix = turned(bed, turn)
         planes = [nscd_lmp.Plane(wall.point @ matrix, wall.normal @ matrix, wall.friction) for wall in walls(3)]
         velocity, attached = one_step(start, balls, 3, solver=solver, law="gap", walls=planes)
-        if solver == "interior_point" and attached.stats["unconverged_steps"][0]:
-            pytest.xfail("the central path folds before the solution, and the step is reported as unconverged")
+        assert attached.stats["unconverged_steps"][0] == 0
         ends.append((velocity.reshape(-1, 3) @ matrix.T).ravel())
     # contacts come in another order; no tangent is preferred, or the error would be that of the slip, 0.1
     np.testing.assert_allclose(ends[0], ends[1], rtol=0, atol=1e-10)

@@ -66,6 +66,10 @@ class Gap final : public Law {
 
 }    // namespace
 
-static const RegisterLaw gap({20, "gap", "gap", true, [] { return std::unique_ptr<Law>(new Gap); }});
+static const RegisterLaw gap({.order = 20,
+                              .name = "gap",
+                              .title = "gap",
+                               .looks_ahead = true,
+                              .make = [] { return std::unique_ptr<Law>(new Gap); }});
 
 }    // namespace nscd

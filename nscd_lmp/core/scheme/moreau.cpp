@@ -47,6 +47,10 @@ class Moreau final : public Law {
 
 }    // namespace
 
-static const RegisterLaw moreau({10, "moreau", "Moreau-Jean", false, [] { return std::unique_ptr<Law>(new Moreau); }});
+static const RegisterLaw moreau({.order = 10,
+                                 .name = "moreau",
+                                 .title = "Moreau-Jean",
+                                  .looks_ahead = false,
+                                 .make = [] { return std::unique_ptr<Law>(new Moreau); }});
 
 }    // namespace nscd

@@ -182,12 +182,27 @@ SolverReport nlgs(Problem &problem, const SolverOptions &options)
   return report;
 }
 
+// What a local law tells the registry, as in SolverEntry.
+struct LocalLawEntry {
+  int order;
+  std::string_view name, title, parameter;
+  double default_parameter;
+};
+
 // The registry's entry of a local law inside NLGS.
 template <class Law>
-SolverEntry local_law(int order, std::string_view name, std::string_view title, std::string_view parameter,
-                      double default_parameter)
+SolverEntry local_law(const LocalLawEntry &law)
 {
-  return {order, name, title, "local law", parameter, default_parameter, true, true, nlgs<Law>, matrix_nlgs<Law>};
+  return {.order = law.order,
+          .name = law.name,
+          .title = law.title,
+          .kind = "local law",
+          .parameter = law.parameter,
+          .default_parameter = law.default_parameter,
+          .friction = true,
+          .ranks = true,
+          .solve = nlgs<Law>,
+          .solve_global = matrix_nlgs<Law>};
 }
 
 }    // namespace nscd

@@ -1,7 +1,7 @@
 // What a solver of the contact problem is, and the one list of them.
 //
 // A solver is a function; its file registers it, and every choice list (fix nscd, attach, solve, the command line),
-// test and legend reads the registry. Adding one means adding one file: to local/ a law inside NLGS, to solvers/
+// test and legend reads the registry. Adding one means adding one file: to local/ a law inside NLGS, to global/
 // anything else.
 #pragma once
 
@@ -72,14 +72,14 @@ double excess(const Criterion &criterion, const Goal &goal);
 bool is_better(const Criterion &one, const Criterion &other, const SolverOptions &options);
 
 struct SolverEntry {
-  int order;                    // place in choice lists and legends
-  std::string_view name;        // keyword
-  std::string_view title;       // for legends
-  std::string_view kind;        // "local law": of NLGS; "global": all contacts at once
-  std::string_view parameter;   // "rho", "gamma" or none, ""
-  double default_parameter;     // multiple of 1/W_nn
-  bool friction;                // whether it takes contacts with friction
-  bool ranks;                   // whether its iterations go across ranks; others are solve_by_ranks' inner solver
+  int order;                         // place in choice lists and legends
+  std::string_view name;             // keyword
+  std::string_view title;            // for legends
+  std::string_view kind;             // "local law": of NLGS; "global": all contacts at once
+  std::string_view parameter = "";   // "rho", "gamma" or none
+  double default_parameter = 0;      // multiple of 1/W_nn
+  bool friction;                     // whether it takes contacts with friction
+  bool ranks;                        // whether its iterations go across ranks; others are solve_by_ranks' inner solver
   SolverReport (*solve)(Problem &, const SolverOptions &);              // grains
   SolverReport (*solve_global)(GlobalProblem &, const SolverOptions &);  // any Delassus matrix
 };

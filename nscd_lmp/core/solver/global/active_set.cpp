@@ -257,8 +257,14 @@ SolverReport active_set(GlobalProblem &problem, const SolverOptions &options)
   return report;
 }
 
-const RegisterSolver registered(
-    {70, "active_set", "active set", "global", "", 0, false, false, on_grains<active_set>, active_set});
+const RegisterSolver registered({.order = 70,
+                                 .name = "active_set",
+                                 .title = "active set",
+                                 .kind = "global",
+                                 .friction = false,
+                                 .ranks = false,
+                                 .solve = on_grains<active_set>,
+                                 .solve_global = active_set});
 
 }    // namespace
 

@@ -170,7 +170,14 @@ SolverReport matrix_apgs(GlobalProblem &problem, const SolverOptions &options)
   return report;
 }
 
-const RegisterSolver registered({60, "apgs", "APGS", "global", "", 0, true, true, apgs, matrix_apgs});
+const RegisterSolver registered({.order = 60,
+                                 .name = "apgs",
+                                 .title = "APGS",
+                                 .kind = "global",
+                                 .friction = true,
+                                 .ranks = true,
+                                 .solve = apgs,
+                                 .solve_global = matrix_apgs});
 
 }    // namespace
 

@@ -137,8 +137,14 @@ SolverReport choose(AnyProblem &problem, const SolverOptions &options)
   return relay.report();
 }
 
-const RegisterSolver registered(
-    {100, "auto", "auto", "global", "", 0, true, true, choose<Problem>, choose<GlobalProblem>});
+const RegisterSolver registered({.order = 100,
+                                 .name = "auto",
+                                 .title = "auto",
+                                 .kind = "global",
+                                 .friction = true,
+                                 .ranks = true,
+                                 .solve = choose<Problem>,
+                                 .solve_global = choose<GlobalProblem>});
 
 }    // namespace
 

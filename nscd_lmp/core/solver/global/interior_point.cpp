@@ -205,8 +205,14 @@ SolverReport interior_point(GlobalProblem &problem, const SolverOptions &options
   return best.finish();
 }
 
-const RegisterSolver registered({80, "interior_point", "interior point", "global", "", 0, true, false,
-                                on_grains<interior_point>, interior_point});
+const RegisterSolver registered({.order = 80,
+                                 .name = "interior_point",
+                                 .title = "interior point",
+                                 .kind = "global",
+                                 .friction = true,
+                                 .ranks = false,
+                                 .solve = on_grains<interior_point>,
+                                 .solve_global = interior_point});
 
 }    // namespace
 

@@ -44,6 +44,7 @@ struct Eal {
   }
 };
 
-static const RegisterSolver eal(local_law<Eal>(40, "eal", "EAL", "rho", 1.0));
+static const RegisterSolver eal(local_law<Eal>(
+    {.order = 40, .name = "eal", .title = "EAL", .parameter = "rho", .default_parameter = 1.0}));
 
 }    // namespace nscd

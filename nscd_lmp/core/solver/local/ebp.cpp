@@ -63,6 +63,7 @@ struct Ebp {
   }
 };
 
-static const RegisterSolver ebp(local_law<Ebp>(30, "ebp", "EBP", "rho", 1.0));
+static const RegisterSolver ebp(local_law<Ebp>(
+    {.order = 30, .name = "ebp", .title = "EBP", .parameter = "rho", .default_parameter = 1.0}));
 
 }    // namespace nscd

@@ -30,6 +30,7 @@ struct Sal {
   }
 };
 
-static const RegisterSolver sal(local_law<Sal>(20, "sal", "SAL", "rho", 4.0 / 9.0));
+static const RegisterSolver sal(local_law<Sal>(
+    {.order = 20, .name = "sal", .title = "SAL", .parameter = "rho", .default_parameter = 4.0 / 9.0}));
 
 }    // namespace nscd

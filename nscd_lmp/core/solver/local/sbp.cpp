@@ -43,6 +43,7 @@ struct Sbp {
   }
 };
 
-static const RegisterSolver sbp(local_law<Sbp>(10, "sbp", "SBP", "rho", 4.0 / 9.0));
+static const RegisterSolver sbp(local_law<Sbp>(
+    {.order = 10, .name = "sbp", .title = "SBP", .parameter = "rho", .default_parameter = 4.0 / 9.0}));
 
 }    // namespace nscd
