@@ -69,7 +69,7 @@ class Gap final : public Law {
 static const RegisterLaw gap({.order = 20,
                               .name = "gap",
                               .title = "gap",
-                               .looks_ahead = true,
+                              .looks_ahead = true,
                               .make = [] { return std::unique_ptr<Law>(new Gap); }});
 
 }    // namespace nscd

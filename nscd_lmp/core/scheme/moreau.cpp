@@ -50,7 +50,7 @@ class Moreau final : public Law {
 static const RegisterLaw moreau({.order = 10,
                                  .name = "moreau",
                                  .title = "Moreau-Jean",
-                                  .looks_ahead = false,
+                                 .looks_ahead = false,
                                  .make = [] { return std::unique_ptr<Law>(new Moreau); }});
 
 }    // namespace nscd
