@@ -31,8 +31,8 @@ void add_friction(nb::dict &d, const State &s, std::size_t n)
   std::vector<double> mu(n);
   nscd::with_friction(s.friction.model, [&]<class M>(M) {
     for (std::size_t k = 0; k < n; ++k) {
-      const nscd::Contact &c = s.contacts[k];
-      const auto &slide = s.friction.slides<M>()[k];
+      const nscd::Contact &c = s.table.contacts[k];
+      const auto &slide = s.table.slides<M>()[k];
       const auto pair = nscd::tangents(c.normal, s.friction.model);
       tangents[k * directions] = pair.first;
       if (directions == 2) tangents[k * directions + 1] = pair.second;
@@ -52,14 +52,14 @@ void add_friction(nb::dict &d, const State &s, std::size_t n)
 // The problem as a Python solver sees it; the names are those of nscd_lmp.ContactSystem.
 nb::dict contact_system(const State &s, std::size_t n, std::span<const double> start)
 {
-  const auto &contacts = s.contacts;
+  const auto &contacts = s.table.contacts;
   const auto *bodies = s.bodies.data();
   nb::dict d;
   d["body_i"] = make_array<int>(n, 0, [&](auto k, auto) { return body_index(s, contacts[k].i); });
   d["body_j"] = make_array<int>(n, 0, [&](auto k, auto) { return body_index(s, contacts[k].j); });
   d["inverse_mass"] = make_array<double>(s.moving(), 0, [&](auto i, auto) { return bodies[i][3]; });
   d["normal"] = make_array<double>(n, 3, [&](auto k, auto c) { return contacts[k].normal[c]; });
-  d["gap"] = make_array<double>(n, 0, [&](auto k, auto) { return s.infos[k].gap; });
+  d["gap"] = make_array<double>(n, 0, [&](auto k, auto) { return s.table.infos[k].gap; });
   d["bias"] = make_array<double>(n, 0, [&](auto k, auto) { return contacts[k].bias; });
   d["velocity"] = make_array<double>(
       n, 0, [&](auto k, auto) { return nscd::normal_velocity(contacts[k], bodies) + contacts[k].bias; });

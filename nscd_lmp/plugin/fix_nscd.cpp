@@ -324,7 +324,7 @@ bool FixNscd::local_rows_wanted() const { return rows_every_step_ || output->nex
 
 void FixNscd::fill_local()
 {
-  const int rows = int(step_->state().contacts.size());
+  const int rows = int(step_->state().table.contacts.size());
   const int columns = size_local_cols;
   local_values_.resize(std::size_t(rows) * columns);
   nscd::fill_contact_rows(step_->state(), local_values_.data());
@@ -371,10 +371,4 @@ void FixNscd::unpack_restart(int atom_index, int nth)
   nscd::RestartRecords::unpack(*step_, record);
 }
 
-double FixNscd::memory_usage()
-{
-  const nscd::State &s = step_->state();
-  return double(s.contacts.capacity()) * (sizeof(nscd::Contact) + sizeof(nscd::ContactInfo)) +
-      double(s.friction.planar.capacity()) * sizeof(nscd::Planar::Slide) +
-      double(s.friction.spatial.capacity()) * sizeof(nscd::Spatial::Slide);
-}
+double FixNscd::memory_usage() { return double(step_->state().table.bytes()); }

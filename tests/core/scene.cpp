@@ -130,9 +130,10 @@ std::string box_walls(double l, double height)
 
 const nscd::Contact *find_contact(const nscd::State &state, int i, int j)
 {
-  for (std::size_t k = 0; k < state.infos.size(); ++k) {
-    const auto &info = state.infos[k];
-    if ((info.atom_i == i && info.atom_j == j) || (info.atom_i == j && info.atom_j == i)) return &state.contacts[k];
+  for (std::size_t k = 0; k < state.table.infos.size(); ++k) {
+    const auto &info = state.table.infos[k];
+    if ((info.atom_i == i && info.atom_j == j) || (info.atom_i == j && info.atom_j == i))
+      return &state.table.contacts[k];
   }
   return nullptr;
 }

@@ -12,7 +12,7 @@ constexpr double instant = 1e-9;  // s
 
 static const nscd::ContactInfo &info_of(const Step &step, const Contact *contact)
 {
-  return step.state().infos[std::size_t(contact - step.state().contacts.data())];
+  return step.state().table.infos[std::size_t(contact - step.state().table.contacts.data())];
 }
 
 TEST(spheres_that_overlap_are_a_contact_with_its_geometry)

@@ -102,8 +102,8 @@ TEST(newtons_law_makes_energy_where_two_grains_nip_a_third)
 
 static void check_cone_and_momentum(const Scene &before, const Scene &after, const nscd::State &state, double mu)
 {
-  for (std::size_t k = 0; k < state.contacts.size(); ++k) {
-    const double normal = state.contacts[k].impulse, slip = nscd::length(nscd::tangential_impulse(state, k));
+  for (std::size_t k = 0; k < state.table.contacts.size(); ++k) {
+    const double normal = state.table.contacts[k].impulse, slip = nscd::length(nscd::tangential_impulse(state, k));
     CHECK(normal >= -1e-9 && slip <= mu * normal + 1e-9);
   }
   for (int d = 0; d < 3; ++d) {

@@ -52,7 +52,7 @@ TEST(moreau_impact_on_a_wall_rebounds_at_its_restitution)
     CHECK_NEAR(step.report().dissipated, 0.5 * 2 * 9 * (1 - e * e), 1e-13);
     CHECK_NEAR(step.report().largest_overlap, e < 1 ? 0.015 * (1 - e) : 0, 1e-15);
     CHECK_NEAR(step.report().largest_overlap_ratio, step.report().largest_overlap, 1e-15);
-    CHECK_NEAR(step.state().contacts[0].impulse, 6 * (1 + e), 1e-14);
+    CHECK_NEAR(step.state().table.contacts[0].impulse, 6 * (1 + e), 1e-14);
   }
 }
 
@@ -81,7 +81,7 @@ TEST(a_resting_grain_is_held_by_its_weight)
     scene.advance(step, 0.01);
     CHECK(scene.v[2] == 0 && scene.x[2] == 1);
     CHECK_NEAR(scene.f[2], 2 * 9.81, 1e-12);
-    CHECK_NEAR(step.state().contacts[0].impulse, 2 * 9.81 * 0.01, 1e-15);
+    CHECK_NEAR(step.state().table.contacts[0].impulse, 2 * 9.81 * 0.01, 1e-15);
     CHECK(step.report().dissipated == 0);
   }
 }
@@ -159,8 +159,8 @@ TEST(a_custom_solver_is_handed_the_problem_and_its_impulses_are_used)
   int calls = 0;
   Step step(settings("law moreau wall plane 0 0 0 0 0 1"), [&](const nscd::State &state, std::size_t n, auto p) {
     ++calls;
-    const auto &c = state.contacts[0];
-    CHECK(n == 1 && state.infos.size() == 1 && p.size() == 1 && p[0] == 0);
+    const auto &c = state.table.contacts[0];
+    CHECK(n == 1 && state.table.infos.size() == 1 && p.size() == 1 && p[0] == 0);
     p[0] = -nscd::normal_velocity(c, state.bodies.data()) * c.w_inverse;
   });
   scene.advance(step, 0.01);

@@ -38,8 +38,8 @@ static std::string random_friction(Random &random)
 static bool in_tangent_planes(const nscd::State &s)
 {
   bool inside = true;
-  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
-    const nscd::Contact &c = s.contacts[k];
+  for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
+    const nscd::Contact &c = s.table.contacts[k];
     const nscd::Vec4 p = nscd::tangential_impulse(s, k);
     inside &= std::abs(nscd::dot(c.normal, p)) <= 1e-9 * (nscd::length(p) + std::abs(c.impulse));
   }
@@ -51,11 +51,11 @@ static bool in_cones(const Step &step)
 {
   const nscd::State &s = step.state();
   bool inside = true;
-  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
-    const int j = s.infos[k].atom_j;
+  for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
+    const int j = s.table.infos[k].atom_j;
     const double mu = j < 0 ? s.settings.wall_friction(-1 - j) : s.settings.friction;
-    const double slack = 1e-7 * s.contacts[k].w_inverse * double(s.contacts.size());
-    const double tangential = nscd::length(nscd::tangential_impulse(s, k)), normal = s.contacts[k].impulse;
+    const double slack = 1e-7 * s.table.contacts[k].w_inverse * double(s.table.contacts.size());
+    const double tangential = nscd::length(nscd::tangential_impulse(s, k)), normal = s.table.contacts[k].impulse;
     inside &= tangential <= slack + (normal > -slack ? mu * (normal + slack) : 0);
   }
   return inside;
@@ -85,7 +85,7 @@ static void check_step(const Scene &scene, const Step &step, double energy, cons
   for (const double value : scene.f) finite &= std::isfinite(value);
   for (const double value : scene.omega) finite &= std::isfinite(value);
   for (const double value : scene.torque) finite &= std::isfinite(value);
-  for (const auto &c : step.state().contacts) pushes &= c.impulse >= -1e-7 * c.w_inverse * step.report().contacts;
+  for (const auto &c : step.state().table.contacts) pushes &= c.impulse >= -1e-7 * c.w_inverse * step.report().contacts;
   CHECK(finite);
   CHECK(pushes || !step.report().converged);
   CHECK(in_cones(step) || !step.report().converged);

@@ -10,10 +10,10 @@
 static double out_of_tangent_planes(const nscd::State &s)
 {
   double worst = 0;
-  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
+  for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
     const nscd::Vec4 p = nscd::tangential_impulse(s, k);
-    const double size = nscd::length(p) + std::abs(s.contacts[k].impulse);
-    if (size > 0) worst = std::max(worst, std::abs(nscd::dot(p, s.contacts[k].normal)) / size);
+    const double size = nscd::length(p) + std::abs(s.table.contacts[k].impulse);
+    if (size > 0) worst = std::max(worst, std::abs(nscd::dot(p, s.table.contacts[k].normal)) / size);
   }
   return worst;
 }

@@ -91,7 +91,7 @@ static void check_parts(const nscd::State &s, int threads)
   const Parts &parts = s.slabs.parts();
   std::size_t seen = 0;
   for (int part = 0; part < parts.count(); ++part) seen += parts.range(part).size();
-  CHECK(seen == s.contacts.size());
+  CHECK(seen == s.table.contacts.size());
   for (int phase = 0; phase < Parts::phases; ++phase) {
     std::set<int> taken;
     for (int t = 0; t < threads; ++t) {
@@ -99,7 +99,7 @@ static void check_parts(const nscd::State &s, int threads)
       if (part < 0) continue;
       std::set<int> touched;
       for (std::size_t k = parts.range(part).first; k < parts.range(part).last; ++k)
-        for (const int body : {s.contacts[k].i, s.contacts[k].j}) touched.insert(body);
+        for (const int body : {s.table.contacts[k].i, s.table.contacts[k].j}) touched.insert(body);
       for (const int body : touched) CHECK(taken.insert(body).second);
     }
   }
@@ -117,7 +117,7 @@ TEST(parts_that_are_swept_at_the_same_time_share_no_body)
     CHECK(step.report().contacts > 1000 * threads);
     check_parts(step.state(), threads);
     const Parts &parts = step.state().slabs.parts();
-    for (int t = 0; t < threads; ++t) CHECK(parts.range(t).size() > step.state().contacts.size() / (2 * threads));
+    for (int t = 0; t < threads; ++t) CHECK(parts.range(t).size() > step.state().table.contacts.size() / (2 * threads));
   }
 }
 

@@ -73,23 +73,24 @@ struct RememberedContact {
     state.friction.spin_response = planar ? nscd::disc_spin_response : nscd::sphere_spin_response;
     state.bodies = {Vec4{0, 0, 0, 0.5}, Vec4{0, 0, 0, 0.25}};
     state.friction.spins.resize(2);
-    state.contacts = {{normal, 0, 1 / 0.75, impulse, 0, 1}};
-    state.infos = {{.key = 77, .atom_i = 0, .atom_j = 1}};
-    state.friction.slides<M>().resize(1);
-    state.friction.slides<M>()[0].impulse = M::from_space(normal, tangential);
+    state.table.open_slides(state.friction.model);
+    state.table.resize(1);
+    state.table.contacts[0] = {normal, 0, 1 / 0.75, impulse, 0, 1};
+    state.table.infos[0] = {.key = 77, .atom_i = 0, .atom_j = 1};
+    state.table.slides<M>()[0].impulse = M::from_space(normal, tangential);
   }
   RememberedContact(const RememberedContact &) = delete;
 
   void swap_bodies()
   {
-    nscd::Contact &c = state.contacts[0];
+    nscd::Contact &c = state.table.contacts[0];
     c.normal = -c.normal;
     std::swap(c.i, c.j);
   }
   // On body 0, in space, N s.
   Vec4 impulse_on_first() const
   {
-    const nscd::Contact &c = state.contacts[0];
+    const nscd::Contact &c = state.table.contacts[0];
     return (c.normal * c.impulse + nscd::tangential_impulse(state, 0)) * (c.i == 0 ? 1.0 : -1.0);
   }
 };
@@ -133,7 +134,7 @@ TEST(contacts_that_were_not_there_start_from_nothing)
   RememberedContact<Spatial> old(Vec4{0, 0, 1, 0}, 3, Vec4{1, 0, 0, 0}), fresh(Vec4{0, 0, 1, 0}, 5, Vec4{0, 1, 0, 0});
   nscd::WarmStart memory;
   memory.remember(old.state);
-  fresh.state.infos[0].key = 78;
+  fresh.state.table.infos[0].key = 78;
   memory.recall(fresh.state, 0);
   CHECK(nscd::length(fresh.impulse_on_first()) == 0);
   CHECK(nscd::length(nscd::without_fourth(fresh.state.bodies[0])) == 0);
@@ -142,17 +143,17 @@ TEST(contacts_that_were_not_there_start_from_nothing)
 // Impulse in space of the only contact, on grain 0, from what a solver is handed.
 static Vec4 in_space_on_first(const nscd::State &s, std::span<const double> p)
 {
-  const nscd::Contact &c = s.contacts[0];
+  const nscd::Contact &c = s.table.contacts[0];
   const nscd::Tangents t = nscd::tangents(c.normal, s.friction.model);
   Vec4 sum = c.normal * p[0] + t.first * p[1];
   if (p.size() == 3) sum += t.second * p[2];
-  return s.infos[0].atom_i == 0 ? sum : -sum;
+  return s.table.infos[0].atom_i == 0 ? sum : -sum;
 }
 
 // Solves for a contact that sticks, of grains that do not spin.
 static void stop_both(const nscd::State &s, std::span<double> p)
 {
-  const nscd::Contact &c = s.contacts[0];
+  const nscd::Contact &c = s.table.contacts[0];
   const nscd::Tangents t = nscd::tangents(c.normal, s.friction.model);
   const Vec4 u = nscd::without_fourth(s.bodies[c.i] - s.bodies[c.j]);
   p[0] = -c.w_inverse * nscd::dot(c.normal, u);

@@ -29,8 +29,8 @@ inline std::uint64_t contact_key(const State &s, const Candidate &c)
 // Contact k overlaps beyond the smaller radius.
 [[noreturn]] inline void refuse_overlap(const State &s, std::size_t k)
 {
-  const Candidate c{s.infos[k].atom_i, s.infos[k].atom_j};
-  const double gap = s.infos[k].gap;
+  const Candidate c{s.table.infos[k].atom_i, s.table.infos[k].atom_j};
+  const double gap = s.table.infos[k].gap;
   const auto &g = s.grains;
   if (is_wall(c))
     fail("grain ", g.tag[c.atom_i], " is ", -gap, " inside wall ", wall_index(c) + 1, ", more than its radius ",
@@ -74,9 +74,9 @@ NSCD_INLINE bool place_contact(State &s, std::size_t k, const Candidate &c)
     }
   }
   const double w = s.bodies[i][3] + s.bodies[j][3];
-  s.contacts[k] = {normal, 0.0, 1 / w, 0.0, i, j};
+  s.table.contacts[k] = {normal, 0.0, 1 / w, 0.0, i, j};
   if (!s.drift.of.empty()) before += drift_of(s, c, normal);
-  s.infos[k] = {gap, dot(normal, before), contact_key(s, c), c.atom_i, c.atom_j,
+  s.table.infos[k] = {gap, dot(normal, before), contact_key(s, c), c.atom_i, c.atom_j,
                 smaller, std::max(s.kicks[i], s.kicks[j]), 0.0, curve};
   return !(gap < -smaller);
 }

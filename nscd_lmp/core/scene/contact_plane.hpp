@@ -26,17 +26,20 @@ NSCD_INLINE double put_apart(const State &s, const Contact &c)
 // How far the contact's plane is where its way starts, m.
 NSCD_INLINE double plane_gap(const State &s, std::size_t k)
 {
-  return s.infos[k].gap + s.infos[k].curve + put_apart(s, s.contacts[k]);
+  return s.table.infos[k].gap + s.table.infos[k].curve + put_apart(s, s.table.contacts[k]);
 }
 
 // How far from there the contact may close, m: no plane drives a pair apart, but what gives an overlap back.
 NSCD_INLINE double open_gap(const State &s, std::size_t k)
 {
-  return std::max(plane_gap(s, k), std::min(s.infos[k].gap, 0.0));
+  return std::max(plane_gap(s, k), std::min(s.table.infos[k].gap, 0.0));
 }
 
 // By which an impact of contact k meets faster along its normal than its bodies' mean velocities say, m/s.
-NSCD_INLINE double impact_kick(const State &s, std::size_t k) { return s.courses.kick.empty() ? 0 : s.courses.kick[k]; }
+NSCD_INLINE double impact_kick(const State &s, std::size_t k)
+{
+  return s.table.impact_kick.is_open() ? s.table.impact_kick[k] : 0;
+}
 
 inline Vec4 separation_at_start(const State &s, const ContactInfo &info)
 {
@@ -46,8 +49,8 @@ inline Vec4 separation_at_start(const State &s, const ContactInfo &info)
 // Contact k, a pair without impulse, takes its plane where the two are `there` apart.
 inline void take_plane(State &s, std::size_t k, const Vec4 &there)
 {
-  Contact &c = s.contacts[k];
-  ContactInfo &info = s.infos[k];
+  Contact &c = s.table.contacts[k];
+  ContactInfo &info = s.table.infos[k];
   const Vec4 start = separation_at_start(s, info);
   const Turned plane = turned(start, std::sqrt(dot(start, start)), there - start);
   c.normal = plane.normal;

@@ -171,7 +171,7 @@ constexpr std::size_t streams = 8;
 // Returns the first contact that does not fit, or as many as there are.
 NSCD_HOT std::size_t place_range(State &s, const Range &range)
 {
-  std::size_t unfit = s.contacts.size();
+  std::size_t unfit = s.table.contacts.size();
   const std::size_t length = (range.size() + streams - 1) / streams;
   std::size_t k = range.first;
   for (std::size_t place = range.first; place < range.first + length; ++place)
@@ -183,14 +183,13 @@ NSCD_HOT std::size_t place_range(State &s, const Range &range)
 void place_all_of(State &s, const Range &range)
 {
   const std::size_t unfit = place_range(s, range);
-  if (unfit < s.contacts.size()) refuse_overlap(s, unfit);
+  if (unfit < s.table.contacts.size()) refuse_overlap(s, unfit);
 }
 
 void place_contacts(State &s)
 {
   const std::size_t n = s.touching.size();
-  resize_closely(s.contacts, n);
-  resize_closely(s.infos, n);
+  s.table.resize(n);
   if (s.slabs.count() == 1) return place_all_of(s, {0, n});
   s.slabs.divide(s);
   s.slabs.order_candidates(s);
@@ -318,16 +317,15 @@ void watch_farther(State &state, const PairList &pairs)
 
 std::size_t promote_near(State &state)
 {
-  const std::size_t before = state.contacts.size();
+  const std::size_t before = state.table.contacts.size();
   state.watched_overlap = {};
   std::size_t kept = 0;
   for (const Watched near : state.near) {
     if (may_meet(state, near)) {
       const double displaced = gap_at(state, near.pair, at_end);
       if (std::min(displaced, gap_constrained(state, near)) < -left_of_contact(state, near.pair)) {
-        resize_closely(state.contacts, state.contacts.size() + 1);
-        resize_closely(state.infos, state.infos.size() + 1);
-        const std::size_t last = state.contacts.size() - 1;
+        const std::size_t last = state.table.size();
+        state.table.resize(last + 1);
         if (!place_contact(state, last, near.pair)) refuse_overlap(state, last);
         continue;
       }
@@ -336,7 +334,7 @@ std::size_t promote_near(State &state)
     state.near[kept++] = near;
   }
   state.near.resize(kept);
-  return state.contacts.size() - before;
+  return state.table.contacts.size() - before;
 }
 
 void look_at_near(State &state)

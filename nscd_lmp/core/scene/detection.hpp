@@ -9,12 +9,12 @@ namespace nscd {
 // ones that free motion brings together and the closest of the rest.
 enum class Sought { within_reach, foreseen };
 
-// Fills state.contacts and state.infos. Impulses and biases are left 0. Other candidates within state.watch go to
+// Fills contacts and infos of state.table. Impulses and biases are left 0. Other candidates within state.watch go to
 // state.near. Raises Error for an overlap beyond the smaller radius.
 void detect(State &state, const PairList &pairs, Sought sought);
 
 // Watched candidates that the solution drives into each other, by state.displacement or by dt times the bodies'
-// velocities, and by more than a solved step leaves of its contacts, become contacts, at the end of state.contacts.
+// velocities, and by more than a solved step leaves of its contacts, become contacts, at the end of state.table.
 // Returns how many. What the others overlap by is left in state.watched_overlap.
 std::size_t promote_near(State &state);
 // That alone, for laws that do not look ahead.

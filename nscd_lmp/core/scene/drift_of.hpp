@@ -33,32 +33,32 @@ NSCD_INLINE double growth_of(const State &s, const Candidate &c)
 
 NSCD_INLINE Vec4 drift_of(const State &s, std::size_t k)
 {
-  return drift_of(s, {s.infos[k].atom_i, s.infos[k].atom_j}, s.contacts[k].normal);
+  return drift_of(s, {s.table.infos[k].atom_i, s.table.infos[k].atom_j}, s.table.contacts[k].normal);
 }
 
 // Its part of the contact's normal velocity, m/s.
 NSCD_INLINE double normal_drift(const State &s, std::size_t k)
 {
-  return s.drift.of.empty() ? 0 : dot(s.contacts[k].normal, drift_of(s, k));
+  return s.drift.of.empty() ? 0 : dot(s.table.contacts[k].normal, drift_of(s, k));
 }
 
 // Its part of the contact's tangential velocity.
 template <class M>
 NSCD_INLINE typename M::Tangent tangential_drift(const State &s, std::size_t k)
 {
-  return s.drift.of.empty() ? typename M::Tangent{} : M::from_space(s.contacts[k].normal, drift_of(s, k));
+  return s.drift.of.empty() ? typename M::Tangent{} : M::from_space(s.table.contacts[k].normal, drift_of(s, k));
 }
 
 // At which a contact may give back what radii and box have done suddenly, m/s.
 NSCD_INLINE double sudden_approach(const State &s, std::size_t k)
 {
-  const ContactInfo &info = s.infos[k];
+  const ContactInfo &info = s.table.infos[k];
   double approach = 0;
   if (!s.drift.sudden.empty())
     approach = s.drift.sudden[info.atom_i] + (info.atom_j >= 0 ? s.drift.sudden[info.atom_j] : 0);
   if (s.drift.jump.empty() || info.atom_j < 0) return approach;
   const Vec4 apart = s.drift.jump[info.atom_i] - s.drift.jump[info.atom_j];
-  return approach + std::max(0.0, -dot(s.contacts[k].normal, apart));
+  return approach + std::max(0.0, -dot(s.table.contacts[k].normal, apart));
 }
 
 }    // namespace nscd

@@ -1,7 +1,6 @@
 #include "scene/slabs.hpp"
 
 #include "scene/contact_geometry.hpp"
-#include "scene/contact_order.hpp"
 
 #include <algorithm>
 
@@ -75,7 +74,7 @@ void Slabs::order_candidates(State &s)
 
 int Slabs::part_of_contact(const State &s, std::size_t k) const
 {
-  const Contact &c = s.contacts[k];
+  const Contact &c = s.table.contacts[k];
   return c.j >= s.moving() ? of(c.i) : parts_.between(of(c.i), of(c.j));
 }
 
@@ -88,7 +87,7 @@ bool Slabs::order_contacts(State &s, std::size_t count)
       const std::size_t k = next_[part];
       const int own = part_of_contact(s, k);
       if (own != part) {
-        swap_contacts(s, k, next_[own]);
+        s.table.swap(k, next_[own]);
         moved = true;
       }
       ++next_[own];

@@ -18,10 +18,9 @@ void place_slides(State &s, std::size_t first)
 {
   const double pairs = s.settings.friction;
   with_friction(s.friction.model, [&]<class M>(M) {
-    auto &slides = s.friction.slides<M>();
-    resize_closely(slides, s.contacts.size());
+    auto &slides = s.table.slides<M>();
     for (std::size_t k = first; k < slides.size(); ++k) {
-      const int j = s.infos[k].atom_j;
+      const int j = s.table.infos[k].atom_j;
       slides[k] = typename M::Slide{};
       slides[k].mu = j < 0 ? s.settings.wall_friction(wall_index({0, j})) : pairs;
     }
@@ -33,13 +32,13 @@ namespace {
 template <class M>
 NSCD_HOT double keep_free_velocities_of(State &s, std::size_t first, std::size_t last)
 {
-  const auto &slides = s.friction.slides<M>();
+  const auto &slides = s.table.slides<M>();
   double sum = 0;
   for (std::size_t k = first; k < last; ++k) {
-    const auto u = velocity<M>(s.contacts[k], s.bodies.data(), s.friction.spins.data());
-    const auto normal = u.n + s.contacts[k].bias;
+    const auto u = velocity<M>(s.table.contacts[k], s.bodies.data(), s.friction.spins.data());
+    const auto normal = u.n + s.table.contacts[k].bias;
     const auto slip = u.t + bias(slides[k]);
-    sum += s.infos[k].free2 = normal * normal + inner(slip, slip);
+    sum += s.table.infos[k].free2 = normal * normal + inner(slip, slip);
   }
   return sum;
 }
@@ -48,8 +47,8 @@ NSCD_HOT double keep_free_normal_velocities(State &s, std::size_t first, std::si
 {
   double sum = 0;
   for (std::size_t k = first; k < last; ++k) {
-    const double v = normal_velocity(s.contacts[k], s.bodies.data()) + s.contacts[k].bias;
-    sum += s.infos[k].free2 = v * v;
+    const double v = normal_velocity(s.table.contacts[k], s.bodies.data()) + s.table.contacts[k].bias;
+    sum += s.table.infos[k].free2 = v * v;
   }
   return sum;
 }
@@ -57,10 +56,10 @@ NSCD_HOT double keep_free_normal_velocities(State &s, std::size_t first, std::si
 template <class M>
 NSCD_HOT double tangential_work_of(const State &s)
 {
-  const auto &slides = s.friction.slides<M>();
+  const auto &slides = s.table.slides<M>();
   double sum = 0;
   for (std::size_t k = 0; k < slides.size(); ++k) {
-    const auto after = velocity<M>(s.contacts[k], s.bodies.data(), s.friction.spins.data()).t;
+    const auto after = velocity<M>(s.table.contacts[k], s.bodies.data(), s.friction.spins.data()).t;
     sum += inner(slides[k].impulse, slip_at_start<M>(s, k) + after);
   }
   return sum;
@@ -71,7 +70,7 @@ NSCD_HOT double tangential_work_of(const State &s)
 void set_tangential_bias(State &s, std::size_t first, double e_t)
 {
   with_friction(s.friction.model, [&]<class M>(M) {
-    auto &slides = s.friction.slides<M>();
+    auto &slides = s.table.slides<M>();
     for (std::size_t k = first; k < slides.size(); ++k) {
       const auto before = e_t > 0 ? slip_at_start<M>(s, k) * e_t : typename M::Tangent{};
       set_bias(slides[k], s.drift.of.empty() ? before : before + tangential_drift<M>(s, k) * (1 + e_t));
@@ -98,7 +97,7 @@ Vec4 tangential_impulse(const State &s, std::size_t k)
 {
   Vec4 p{};
   with_friction(s.friction.model, [&]<class M>(M) {
-    p = M::in_space(s.contacts[k].normal, s.friction.slides<M>()[k].impulse);
+    p = M::in_space(s.table.contacts[k].normal, s.table.slides<M>()[k].impulse);
   });
   return p;
 }
@@ -107,18 +106,18 @@ void add_slide_impulses(State &s, std::span<const Vec4> impulses)
 {
   with_friction(s.friction.model, [&]<class M>(M) {
     for (std::size_t k = 0; k < impulses.size(); ++k)
-      s.friction.slides<M>()[k].impulse += M::from_space(s.contacts[k].normal, impulses[k]);
+      s.table.slides<M>()[k].impulse += M::from_space(s.table.contacts[k].normal, impulses[k]);
   });
 }
 
 void add_impulse(State &s, std::size_t k, double normal, const Vec4 &tangential)
 {
-  Contact &c = s.contacts[k];
+  Contact &c = s.table.contacts[k];
   c.impulse += normal;
   apply_impulse(c, normal, s.bodies.data());
   with_friction(s.friction.model, [&]<class M>(M) {
     const auto dp = M::from_space(c.normal, tangential);
-    s.friction.slides<M>()[k].impulse += dp;
+    s.table.slides<M>()[k].impulse += dp;
     apply_tangential<M>(c, dp, s.friction.spin_response, s.bodies.data(), s.friction.spins.data());
   });
 }
@@ -126,22 +125,25 @@ void add_impulse(State &s, std::size_t k, double normal, const Vec4 &tangential)
 void read_impulse(const State &s, std::size_t k, double *components)
 {
   const int count = unknowns(s.friction.model);
-  components[0] = s.contacts[k].impulse;
+  components[0] = s.table.contacts[k].impulse;
   if (count == 1) return;
-  const Tangents t = tangents(s.contacts[k].normal, s.friction.model);
+  const Tangents t = tangents(s.table.contacts[k].normal, s.friction.model);
   const Vec4 p = tangential_impulse(s, k);
   components[1] = dot(t.first, p);
   if (count == 3) components[2] = dot(t.second, p);
 }
 
-void remove_impulse(State &s, std::size_t k) { add_impulse(s, k, -s.contacts[k].impulse, -tangential_impulse(s, k)); }
+void remove_impulse(State &s, std::size_t k)
+{
+  add_impulse(s, k, -s.table.contacts[k].impulse, -tangential_impulse(s, k));
+}
 
 void write_impulse(State &s, std::size_t k, const double *components)
 {
   const int count = unknowns(s.friction.model);
   Vec4 tangential{};
   if (count > 1) {
-    const Tangents t = tangents(s.contacts[k].normal, s.friction.model);
+    const Tangents t = tangents(s.table.contacts[k].normal, s.friction.model);
     tangential = t.first * components[1] + t.second * (count == 3 ? components[2] : 0.0);
   }
   add_impulse(s, k, components[0], tangential);
@@ -150,7 +152,7 @@ void write_impulse(State &s, std::size_t k, const double *components)
 Sliding sliding(State &s, double e_t)
 {
   Friction &f = s.friction;
-  return {f.model, f.spin_response, e_t, f.spins.data(), f.planar.data(), f.spatial.data()};
+  return {f.model, f.spin_response, e_t, f.spins.data(), s.table.planar.data(), s.table.spatial.data()};
 }
 
 }    // namespace nscd

@@ -47,7 +47,7 @@ Sliding sliding(State &state, double e_t);
 template <class M>
 NSCD_INLINE typename M::Tangent slip_at_start(const State &s, std::size_t k)
 {
-  const Contact &c = s.contacts[k];
+  const Contact &c = s.table.contacts[k];
   alignas(vec4_alignment) Vec4 difference{}, spins{};
   for (const int b : {c.i, c.j}) {
     if (b >= s.moving()) continue;

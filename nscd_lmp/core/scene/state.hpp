@@ -4,8 +4,8 @@
 #include "base/hot.hpp"
 #include "base/storage.hpp"
 #include "contact/contact.hpp"
-#include "contact/friction.hpp"
 #include "parallel/halo.hpp"
+#include "scene/contact_table.hpp"
 #include "scene/drift.hpp"
 #include "scene/slabs.hpp"
 #include "scene/views.hpp"
@@ -33,36 +33,19 @@ struct Friction {
   Model model = Model::frictionless;
   double spin_response = 0;                 // m r^2 / I
   AlignedVector<Vec4> spins{};              // (bodies) surface velocity r omega, m/s; walls 0
-  AlignedVector<Planar::Slide> planar{};    // beside contacts, one of the two
-  AlignedVector<Spatial::Slide> spatial{};
-  AlignedVector<Vec4> impact_impulse{};     // beside contacts, tangential, N s, of impacts; or empty
-
-  template <class M>
-  auto &slides()
-  {
-    if constexpr (std::is_same_v<M, Planar>) return planar;
-    else return spatial;
-  }
-  template <class M>
-  const auto &slides() const
-  {
-    return const_cast<Friction *>(this)->slides<M>();
-  }
 };
 
 // How impacts under restitution bend the courses of grains: each acts when its pair meets. Empty where there are none.
 struct Courses {
   AlignedVector<Vec4> start{};   // (bodies) m from q_k, where the straight way behind the last impact comes from
   AlignedVector<Vec4> shift{};   // (bodies) m, by which impacts displace more than if they acted half-way
-  std::vector<double> moment{};  // (contacts of a round) when they meet, s after the start of the step
-  std::vector<double> kick{};    // (contacts of a round) m/s: n.u when they meet, less n.u in the middle of the step
   std::vector<char> straight{};  // (bodies) whether its impacts act half-way after all
   double work = 0;               // of smooth forces on the shift, J in the units of m v^2
 
   // Keeps the memory.
   void clear()
   {
-    start.clear(), shift.clear(), moment.clear(), kick.clear(), straight.clear();
+    start.clear(), shift.clear(), straight.clear();
     work = 0;
   }
 };
@@ -99,10 +82,7 @@ struct State {
   std::vector<double> kicks{};           // (bodies) |dt f / m| of the step, m/s; obstacles 0
   AlignedVector<Vec4> displacement{};    // (moving()) from where contacts were sought to q_{k+1}
   std::vector<double> moved{};           // (bodies) its length, m; scratch
-  std::vector<Contact> contacts{};
-  std::vector<ContactInfo> infos{};      // beside contacts
-  std::vector<double> per_approach{};    // beside contacts, 1 / the approach that a step may leave, s/m; or empty: any
-  std::vector<double> impact_impulse{};  // beside contacts, N s, of impacts resolved ahead of them; or empty
+  ContactTable table{};
   Courses courses{};                     // of grains with impacts
 
   Friction friction{};

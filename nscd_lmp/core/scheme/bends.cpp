@@ -25,8 +25,8 @@ struct Pair {
 
 Pair pair_now(const State &s, std::size_t k)
 {
-  const Contact &c = s.contacts[k];
-  const ContactInfo &info = s.infos[k];
+  const Contact &c = s.table.contacts[k];
+  const ContactInfo &info = s.table.infos[k];
   return {separation_at_start(s, info) + s.courses.start[c.i] - s.courses.start[c.j],
           without_fourth(s.bodies[c.i] - s.bodies[c.j]) + carried_apart(s, {info.atom_i, info.atom_j})};
 }
@@ -35,8 +35,8 @@ Pair pair_now(const State &s, std::size_t k)
 void turn(State &s, std::size_t k, const Vec4 &there)
 {
   take_plane(s, k, there);
-  auto &tangential = s.friction.impact_impulse;
-  if (!tangential.empty()) tangential[k] = turned_along(s.contacts[k].normal, tangential[k]);
+  auto &tangential = s.table.impact_tangential;
+  if (tangential.is_open()) tangential[k] = turned_along(s.table.contacts[k].normal, tangential[k]);
 }
 
 // Whether neither course bends.
@@ -49,21 +49,22 @@ bool is_straight(const State &s, const Contact &c)
 // How far the plane of contact k is at the end of the step, m; an overlap that it had is none.
 double plane_at_end(const State &s, std::size_t k, double u)
 {
-  return plane_gap(s, k) - std::min(s.infos[k].gap, 0.0) + s.dt * u;
+  return plane_gap(s, k) - std::min(s.table.infos[k].gap, 0.0) + s.dt * u;
 }
 
 }    // namespace
 
 void Bends::begin(State &s)
 {
-  meetings_.reserve(s.contacts.size());
+  meetings_.reserve(s.table.contacts.size());
   s.courses.shift.assign(s.bodies.size(), Vec4{});
   s.courses.start.assign(s.bodies.size(), Vec4{});
   s.courses.work = 0;
   struck_.assign(s.bodies.size(), 0);
   s.courses.straight.resize(s.bodies.size());
-  for (std::size_t k = 0; k < s.contacts.size(); ++k)
-    if (s.infos[k].curve < 0 && is_straight(s, s.contacts[k])) turn(s, k, separation_at_start(s, s.infos[k]));
+  for (std::size_t k = 0; k < s.table.contacts.size(); ++k)
+    if (s.table.infos[k].curve < 0 && is_straight(s, s.table.contacts[k]))
+      turn(s, k, separation_at_start(s, s.table.infos[k]));
 }
 
 void Bends::find_starts(State &s) const
@@ -86,9 +87,9 @@ double Bends::last_struck(const State &s, const Contact &c) const
 
 std::optional<double> Bends::meet(State &s, std::size_t k) const
 {
-  const Contact &c = s.contacts[k];
+  const Contact &c = s.table.contacts[k];
   const double struck = last_struck(s, c);
-  const bool is_flat = s.infos[k].atom_j < 0 || is_straight(s, c);
+  const bool is_flat = s.table.infos[k].atom_j < 0 || is_straight(s, c);
   std::optional<double> moment = is_flat ? meet_plane(s, k, struck) : meet_grain(s, k, struck);
   if (moment) *moment += struck;
   return moment && *moment <= s.dt ? moment : std::nullopt;
@@ -96,15 +97,15 @@ std::optional<double> Bends::meet(State &s, std::size_t k) const
 
 std::optional<double> Bends::meet_plane(const State &s, std::size_t k, double struck) const
 {
-  const double closing = -(normal_velocity(s.contacts[k], s.bodies.data()) + normal_drift(s, k));
-  const double gap = s.infos[k].gap + put_apart(s, s.contacts[k]);
+  const double closing = -(normal_velocity(s.table.contacts[k], s.bodies.data()) + normal_drift(s, k));
+  const double gap = s.table.infos[k].gap + put_apart(s, s.table.contacts[k]);
   return closing > 0 ? std::optional(std::max(gap / closing - struck, 0.0)) : std::nullopt;
 }
 
 std::optional<double> Bends::meet_grain(State &s, std::size_t k, double struck) const
 {
   constexpr double most_turned = 0.5;   // cosine: a pair that is turned by more would be let through each other
-  const ContactInfo &info = s.infos[k];
+  const ContactInfo &info = s.table.infos[k];
   const Pair pair = pair_now(s, k);
   const double growth = growth_of(s, {info.atom_i, info.atom_j});
   const double radii = s.spheres[info.atom_i].radius + s.spheres[info.atom_j].radius + growth * struck;
@@ -125,7 +126,7 @@ std::optional<double> Bends::meet_grain(State &s, std::size_t k, double struck) 
 // The smooth forces change velocities evenly: at `moment` they differ by this from those in the middle, along n.
 double Bends::kick_until(const State &s, std::size_t k, double moment) const
 {
-  const Contact &c = s.contacts[k];
+  const Contact &c = s.table.contacts[k];
   const auto kick = [&](int body) {
     return is_grain(s, body) && !s.courses.straight[body] ? smooth_kick(s, body) : Vec4{};
   };
@@ -136,12 +137,12 @@ void Bends::look(State &s, const IsImpact &is_impact)
 {
   find_starts(s);
   meetings_.clear();
-  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
-    const double before = normal_velocity(s.contacts[k], s.bodies.data()) + normal_drift(s, k);
+  for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
+    const double before = normal_velocity(s.table.contacts[k], s.bodies.data()) + normal_drift(s, k);
     if (plane_at_end(s, k, before) >= 0) continue;
     const auto moment = meet(s, k);
     if (!moment) continue;
-    const double u = normal_velocity(s.contacts[k], s.bodies.data()) + normal_drift(s, k);
+    const double u = normal_velocity(s.table.contacts[k], s.bodies.data()) + normal_drift(s, k);
     const double kick = kick_until(s, k, *moment);
     if (is_impact(k, u + kick)) meetings_.push_back({k, *moment, kick});
   }
@@ -152,7 +153,7 @@ const std::vector<Bends::Meeting> &Bends::first_meetings(State &s)
   sooner_.assign(s.bodies.size(), 0);
   const auto left = [&s](const Meeting &met) { return char(parts_of_step - parts(s, met.moment)); };
   const auto each = [&](const Meeting &met, auto act) {
-    for (const int body : {s.contacts[met.contact].i, s.contacts[met.contact].j})
+    for (const int body : {s.table.contacts[met.contact].i, s.table.contacts[met.contact].j})
       if (is_grain(s, body)) act(body);
   };
   for (const Meeting &met : meetings_) each(met, [&](int b) { sooner_[b] = std::max(sooner_[b], left(met)); });
@@ -169,10 +170,10 @@ void Bends::act(State &s, std::size_t count)
 {
   change_across(s.halo, s.courses.shift, nullptr, [&] {
     for (std::size_t k = 0; k < count; ++k) {
-      const Contact &c = s.contacts[k];
-      const double moment = s.courses.moment[k];
+      const Contact &c = s.table.contacts[k];
+      const double moment = s.table.impact_moment[k];
       const Vec4 way = (c.normal * c.impulse + tangential_impulse(s, k)) * (0.5 * s.dt - moment);
-      s.courses.work += c.impulse * s.courses.kick[k];
+      s.courses.work += c.impulse * s.table.impact_kick[k];
       for (const int body : {c.i, c.j}) {
         const double moved = body == c.i ? s.bodies[body][3] : -s.bodies[body][3];
         if (!s.courses.straight[body]) s.courses.shift[body] += way * moved;
@@ -186,11 +187,11 @@ void Bends::act(State &s, std::size_t count)
 // Contacts that are to be pushed apart although they part, by more than a solved step leaves.
 void Bends::find_contradictions(State &s)
 {
-  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
-    const Contact &c = s.contacts[k];
+  for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
+    const Contact &c = s.table.contacts[k];
     const auto is_kept = [&] {
       const double parts = std::max(0.0, normal_velocity(c, s.bodies.data()) + normal_drift(s, k));
-      return plane_at_end(s, k, parts) >= -left_of_overlap(s, worth(s.infos[k]), s.infos[k].radius);
+      return plane_at_end(s, k, parts) >= -left_of_overlap(s, worth(s.table.infos[k]), s.table.infos[k].radius);
     };
     if (put_apart(s, c) == 0 || is_kept()) continue;
     meet(s, k);
@@ -205,9 +206,9 @@ void Bends::take_back(State &s)
   for (std::size_t b = 0; b < s.courses.straight.size(); ++b)
     if (s.courses.straight[b]) s.courses.shift[b] = Vec4{};
   find_starts(s);
-  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
-    const Contact &c = s.contacts[k];
-    const ContactInfo &info = s.infos[k];
+  for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
+    const Contact &c = s.table.contacts[k];
+    const ContactInfo &info = s.table.infos[k];
     if (info.curve < 0 && is_straight(s, c)) turn(s, k, separation_at_start(s, info));
   }
 }
@@ -224,11 +225,11 @@ bool Bends::straighten(State &s)
 void Bends::straighten_connected(State &s, std::size_t count)
 {
   joined_.clear();
-  for (const Contact &c : s.contacts)
+  for (const Contact &c : s.table.contacts)
     if (is_grain(s, c.i) && is_grain(s, c.j)) joined_.push_back({c.i, c.j});
   islands_.find(s.bodies.size(), joined_, s.halo);
   islands_.clear_sums();
-  for (std::size_t k = 0; k < count; ++k) islands_.add(grain_of(s.contacts[k], s.bodies.data()), {1, 0});
+  for (std::size_t k = 0; k < count; ++k) islands_.add(grain_of(s.table.contacts[k], s.bodies.data()), {1, 0});
   if (s.halo) islands_.sum(0)[0] = s.halo->sum(islands_.sum(0)[0]);
   for (int b = 0; b < s.moving(); ++b)
     if (is_grain(s, b) && islands_.sum(islands_.of(b))[0] > 0) s.courses.straight[b] = 1;

@@ -13,21 +13,21 @@ namespace nscd {
 // Rate at which the contact's gap changes as its bodies move now, m/s.
 NSCD_INLINE double Displacements::rate(const State &s, std::size_t k) const
 {
-  const Contact &c = s.contacts[k];
+  const Contact &c = s.table.contacts[k];
   return dot(c.normal, mean_[c.i] - mean_[c.j]) + normal_drift(s, k);
 }
 
 // The rate at which it does if all but impacts acts from the start.
 NSCD_INLINE double solved_rate(const State &s, std::size_t k)
 {
-  const Contact &c = s.contacts[k];
+  const Contact &c = s.table.contacts[k];
   return normal_velocity(c, s.bodies.data()) + put_apart(s, c) / s.dt + normal_drift(s, k);
 }
 
 // Whether the contact is left with no more overlap than the solver's tolerance leaves anyway.
 NSCD_INLINE bool Displacements::is_open(const State &s, std::size_t k, double rate) const
 {
-  const ContactInfo &info = s.infos[k];
+  const ContactInfo &info = s.table.infos[k];
   return !(info.gap + info.curve + s.dt * rate < -left_of_overlap(s, worth(info), info.radius));
 }
 
@@ -62,11 +62,11 @@ void Displacements::add_shift(const State &s)
 // Collected without branches, which would be mispredicted.
 NSCD_HOT void Displacements::find_suspects(const State &s)
 {
-  const std::size_t n = s.contacts.size();
+  const std::size_t n = s.table.contacts.size();
   resize_closely(suspects_, n);
   std::size_t count = 0;
   for (std::size_t k = 0; k < n; ++k) {
-    fetch_bodies(s.contacts[std::min(k + fetch_ahead, n - 1)], mean_.data());
+    fetch_bodies(s.table.contacts[std::min(k + fetch_ahead, n - 1)], mean_.data());
     suspects_[count] = std::uint32_t(k);
     count += !is_open(s, k, rate(s, k));
   }
@@ -78,10 +78,10 @@ NSCD_HOT void Displacements::find_suspects(const State &s)
 void Displacements::act_earlier(const State &s)
 {
   for (const std::uint32_t k : suspects_) {
-    const Contact &c = s.contacts[k];
+    const Contact &c = s.table.contacts[k];
     if (!(c.impulse > 0)) continue;
     const double of_i = final_[c.i] ? 0 : s.bodies[c.i][3], of_j = final_[c.j] ? 0 : s.bodies[c.j][3];
-    const double opens = -(s.infos[k].gap + s.infos[k].curve) / s.dt;
+    const double opens = -(s.table.infos[k].gap + s.table.infos[k].curve) / s.dt;
     const double missing = std::min(opens, solved_rate(s, k)) - rate(s, k);
     const double share = std::clamp(missing / ((of_i + of_j) * c.impulse), 0.0, 0.5);
     const Vec4 earlier = share * (c.normal * c.impulse + tangential_impulse(s, k));
@@ -94,7 +94,7 @@ void Displacements::act_earlier(const State &s)
 // Returns whether that changed a grain.
 NSCD_INLINE bool Displacements::open_contact(const State &s, std::uint32_t k)
 {
-  const Contact &c = s.contacts[k];
+  const Contact &c = s.table.contacts[k];
   if (final_[c.i] && final_[c.j]) return false;
   const double now = rate(s, k);
   if (is_open(s, k, now) || now >= solved_rate(s, k)) return false;
@@ -116,12 +116,12 @@ NSCD_HOT bool Displacements::open_suspects(const State &s)
 // Those between a grain that has changed in the pass before and one that has not.
 NSCD_HOT void Displacements::find_neighbors(const State &s)
 {
-  const std::size_t n = s.contacts.size();
+  const std::size_t n = s.table.contacts.size();
   resize_closely(suspects_, n);
   std::size_t count = 0;
   for (std::size_t k = 0; k < n; ++k) {
     suspects_[count] = std::uint32_t(k);
-    count += final_[s.contacts[k].i] + final_[s.contacts[k].j] == lately;
+    count += final_[s.table.contacts[k].i] + final_[s.table.contacts[k].j] == lately;
   }
   suspects_.resize(count);
 }
@@ -141,11 +141,11 @@ void Displacements::open_contacts(const State &s)
 // Contact k takes the plane of the start of the step, with its impulse.
 static void turn_back(State &s, std::size_t k)
 {
-  const Contact &c = s.contacts[k];
+  const Contact &c = s.table.contacts[k];
   const double normal = c.impulse;
   const Vec4 tangential = tangential_impulse(s, k);
   remove_impulse(s, k);
-  take_plane(s, k, separation_at_start(s, s.infos[k]));
+  take_plane(s, k, separation_at_start(s, s.table.infos[k]));
   add_impulse(s, k, normal, turned_along(c.normal, tangential));
 }
 
@@ -153,7 +153,7 @@ static void turn_back(State &s, std::size_t k)
 // than may be.
 static bool has_left_plane(const State &s, std::size_t k)
 {
-  const ContactInfo &info = s.infos[k];
+  const ContactInfo &info = s.table.infos[k];
   if (info.curve == 0 || !s.settings.overlap) return false;
   const double end = gap_at(s, {info.atom_i, info.atom_j}, at_end);
   return end < -*s.settings.overlap * info.radius && end < info.gap;
@@ -161,7 +161,7 @@ static bool has_left_plane(const State &s, std::size_t k)
 
 static bool is_jammed(const State &s, std::size_t k, std::span<const char> jammed)
 {
-  return !jammed.empty() && jammed[grain_of(s.contacts[k], s.bodies.data())] != 0;
+  return !jammed.empty() && jammed[grain_of(s.table.contacts[k], s.bodies.data())] != 0;
 }
 
 // Contacts that overlap since a course comes from beyond their surface.
@@ -169,8 +169,8 @@ bool Displacements::straighten_broken(State &s, std::span<const char> jammed)
 {
   std::vector<char> &straight = s.courses.straight;
   before_ = straight;
-  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
-    const Contact &c = s.contacts[k];
+  for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
+    const Contact &c = s.table.contacts[k];
     if (is_open(s, k, rate(s, k)) || is_jammed(s, k, jammed)) continue;
     const bool relied = put_apart(s, c) < 0 && rate(s, k) < 0;
     if (!relied && !has_left_plane(s, k)) continue;

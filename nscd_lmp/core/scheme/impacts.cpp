@@ -1,6 +1,5 @@
 #include "scheme/impacts.hpp"
 
-#include "scene/contact_order.hpp"
 #include "scene/drift_of.hpp"
 #include "scene/slides.hpp"
 
@@ -29,11 +28,11 @@ void smooth_half(State &s, double sign)
 void bias_impact(State &s, std::size_t k, double u, double kick)
 {
   const double e = s.settings.restitution;
-  s.contacts[k].bias = e * (u + kick) + kick + normal_drift(s, k);
+  s.table.contacts[k].bias = e * (u + kick) + kick + normal_drift(s, k);
   with_friction(s.friction.model, [&]<class M>(M) {
-    const auto slip = velocity<M>(s.contacts[k], s.bodies.data(), s.friction.spins.data()).t;
+    const auto slip = velocity<M>(s.table.contacts[k], s.bodies.data(), s.friction.spins.data()).t;
     const auto drift = tangential_drift<M>(s, k);
-    set_bias(s.friction.slides<M>()[k], (slip + drift) * s.settings.e_t + drift);
+    set_bias(s.table.slides<M>()[k], (slip + drift) * s.settings.e_t + drift);
   });
 }
 
@@ -51,21 +50,21 @@ Closing select_closing(State &s, Bends &bends)
   std::size_t closing = 0;
   double energy = 0;
   bends.look(s, [&](std::size_t k, double u) {
-    return u < -resting_kicks * s.infos[k].kick - tolerances * tolerance(s, worth(s.infos[k]));
+    return u < -resting_kicks * s.table.infos[k].kick - tolerances * tolerance(s, worth(s.table.infos[k]));
   });
-  s.courses.moment.clear();
-  s.courses.kick.clear();
+  s.table.impact_moment.open();
+  s.table.impact_kick.open();
   for (const Bends::Meeting &met : bends.first_meetings(s)) {
-    swap_contacts(s, met.contact, closing);
-    const double u = normal_velocity(s.contacts[closing], s.bodies.data()) + normal_drift(s, closing);
-    energy += 0.5 * s.contacts[closing].w_inverse * u * u;
-    s.courses.moment.push_back(met.moment);
-    s.courses.kick.push_back(met.kick);
+    s.table.swap(met.contact, closing);
+    const double u = normal_velocity(s.table.contacts[closing], s.bodies.data()) + normal_drift(s, closing);
+    energy += 0.5 * s.table.contacts[closing].w_inverse * u * u;
+    s.table.impact_moment[closing] = met.moment;
+    s.table.impact_kick[closing] = met.kick;
     bias_impact(s, closing++, u, met.kick);
   }
   double sums[] = {double(closing), energy};
   if (s.halo) {
-    s.halo->find_touching(s.contacts);
+    s.halo->find_touching(s.table.contacts);
     s.halo->sum(sums);
   }
   return {closing, sums[0], sums[1]};
@@ -73,14 +72,15 @@ Closing select_closing(State &s, Bends &bends)
 
 void keep_impulses(State &s, std::size_t closing)
 {
-  resize_closely(s.impact_impulse, s.contacts.size());
-  for (std::size_t k = 0; k < closing; ++k) s.impact_impulse[k] += std::exchange(s.contacts[k].impulse, 0.0);
+  auto &normal = s.table.impact_impulse;
+  normal.open();
+  for (std::size_t k = 0; k < closing; ++k) normal[k] += std::exchange(s.table.contacts[k].impulse, 0.0);
   with_friction(s.friction.model, [&]<class M>(M) {
-    auto &kept = s.friction.impact_impulse;
-    resize_closely(kept, s.contacts.size());
+    auto &kept = s.table.impact_tangential;
+    kept.open();
     for (std::size_t k = 0; k < closing; ++k) {
-      const auto impulse = std::exchange(s.friction.slides<M>()[k].impulse, typename M::Tangent{});
-      kept[k] += M::in_space(s.contacts[k].normal, impulse);
+      const auto impulse = std::exchange(s.table.slides<M>()[k].impulse, typename M::Tangent{});
+      kept[k] += M::in_space(s.table.contacts[k].normal, impulse);
     }
   });
 }
@@ -89,14 +89,13 @@ void keep_impulses(State &s, std::size_t closing)
 
 bool resolve_impacts(State &s, Bends &bends, const SolvePart &solve)
 {
-  s.impact_impulse.clear();
-  s.friction.impact_impulse.clear();
-  s.per_approach.clear();   // of the last step's contacts, which are others
+  s.table.close_impacts();
+  s.table.per_approach.close();   // of the last step's contacts, which are others
   smooth_half(s, -1);
   bends.begin(s);
   Closing closing = select_closing(s, bends);
   const double first_energy = closing.energy;
-  const double contacts = sum_everywhere(s, double(s.contacts.size()));
+  const double contacts = sum_everywhere(s, double(s.table.contacts.size()));
   const double rounds = std::clamp(most_looks / std::max(contacts, 1.0), least_rounds, most_rounds);
   double visits = std::max(cheap_visits, most_visits * contacts);
   for (int round = 0; round < rounds && visits > 0; ++round) {
@@ -112,8 +111,8 @@ bool resolve_impacts(State &s, Bends &bends, const SolvePart &solve)
     closing = select_closing(s, bends);
   }
   if (closing.all > 0) bends.straighten_connected(s, closing.here);
-  s.courses.moment.clear();
-  s.courses.kick.clear();
+  s.table.impact_moment.close();
+  s.table.impact_kick.close();
   smooth_half(s, +1);
   const double e = s.settings.restitution;
   return e * e * closing.energy > worth_saying * first_energy;

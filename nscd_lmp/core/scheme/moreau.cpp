@@ -30,8 +30,8 @@ class Moreau final : public Law {
   {
     const double e = s.settings.restitution;
     if (e == 0 && s.drift.of.empty()) return;
-    for (std::size_t k = first; k < s.contacts.size(); ++k)
-      s.contacts[k].bias = e * s.infos[k].speed_before + normal_drift(s, k);
+    for (std::size_t k = first; k < s.table.contacts.size(); ++k)
+      s.table.contacts[k].bias = e * s.table.infos[k].speed_before + normal_drift(s, k);
   }
 
   bool displace(State &s, std::span<const char>) override

@@ -5,7 +5,7 @@
 
 namespace nscd {
 
-// Sets state.per_approach of the contacts from `first` on, whose biases are there: so that none is deeper than
+// Sets state.table.per_approach of the contacts from `first` on, whose biases are there: so that none is deeper than
 // `overlap` at the end of the step, or, where one is already, deeper than it was.
 void bound_approach(State &state, std::size_t first);
 

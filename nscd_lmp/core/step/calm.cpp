@@ -18,7 +18,7 @@ void Calm::find_islands(const State &s, std::size_t count)
   joined_.clear();
   joined_.reserve(count);
   for (std::size_t k = 0; k < count; ++k) {
-    const Contact &c = s.contacts[k];
+    const Contact &c = s.table.contacts[k];
     if (c.impulse > 0 && s.bodies[c.i][3] > 0 && s.bodies[c.j][3] > 0) joined_.push_back({c.i, c.j});
   }
   islands_.find(s.bodies.size(), joined_, s.halo);
@@ -34,7 +34,7 @@ void Calm::find_islands(const State &s, std::size_t count)
 void Calm::find_drives(const State &s, std::size_t count)
 {
   for (std::size_t k = 0; k < count; ++k) {
-    const Contact &c = s.contacts[k];
+    const Contact &c = s.table.contacts[k];
     Island &island = of_contact(s, c);
     for (const int b : {c.i, c.j}) {
       if (s.bodies[b][3] > 0) continue;
@@ -61,7 +61,7 @@ void Calm::find_jams(const State &s, std::size_t count)
     jams_.emplace_back();
   };
   for (std::size_t k = 0; k < count; ++k) {
-    const Contact &c = s.contacts[k];
+    const Contact &c = s.table.contacts[k];
     Island &island = of_contact(s, c);
     const double v = normal_velocity(c, s.bodies.data()) + normal_drift(s, k), push = c.impulse / c.w_inverse;
     if (island.closing > 0 && v < -part * island.closing && push > far_harder * island.drive) jam(island);

@@ -16,9 +16,9 @@ namespace {
 // Of what there is but the contacts' own drift.
 void clear_biases(State &s, std::size_t count)
 {
-  for (std::size_t k = 0; k < count; ++k) s.contacts[k].bias = normal_drift(s, k);
+  for (std::size_t k = 0; k < count; ++k) s.table.contacts[k].bias = normal_drift(s, k);
   with_friction(s.friction.model, [&]<class M>(M) {
-    for (std::size_t k = 0; k < count; ++k) set_bias(s.friction.slides<M>()[k], tangential_drift<M>(s, k));
+    for (std::size_t k = 0; k < count; ++k) set_bias(s.table.slides<M>()[k], tangential_drift<M>(s, k));
   });
 }
 
@@ -41,7 +41,7 @@ void EnergyLimit::store(const State &s, std::size_t count, Motion &m) const
   const bool slides = s.friction.model != Model::frictionless;
   m.normal.resize(count);
   if (slides) m.tangential.resize(count);
-  for (std::size_t k = 0; k < count; ++k) m.normal[k] = s.contacts[k].impulse;
+  for (std::size_t k = 0; k < count; ++k) m.normal[k] = s.table.contacts[k].impulse;
   for (std::size_t k = 0; slides && k < count; ++k) m.tangential[k] = tangential_impulse(s, k);
 }
 
@@ -49,10 +49,10 @@ void EnergyLimit::load(State &s, const Motion &motion) const
 {
   s.bodies = motion.bodies;
   s.friction.spins = motion.spins;
-  for (std::size_t k = 0; k < motion.normal.size(); ++k) s.contacts[k].impulse = motion.normal[k];
+  for (std::size_t k = 0; k < motion.normal.size(); ++k) s.table.contacts[k].impulse = motion.normal[k];
   with_friction(s.friction.model, [&]<class M>(M) {
     for (std::size_t k = 0; k < motion.normal.size(); ++k)
-      s.friction.slides<M>()[k].impulse = M::from_space(s.contacts[k].normal, motion.tangential[k]);
+      s.table.slides<M>()[k].impulse = M::from_space(s.table.contacts[k].normal, motion.tangential[k]);
   });
 }
 
@@ -65,13 +65,15 @@ void EnergyLimit::load_blend(State &s, std::size_t count) const
     s.bodies[i] = mix(first_.bodies[i], second_.bodies[i], share);
     if (!first_.spins.empty()) s.friction.spins[i] = mix(first_.spins[i], second_.spins[i], share);
   }
-  const auto share_of = [&](std::size_t k) { return share_[islands_.of(grain_of(s.contacts[k], s.bodies.data()))]; };
+  const auto share_of = [&](std::size_t k) {
+    return share_[islands_.of(grain_of(s.table.contacts[k], s.bodies.data()))];
+  };
   for (std::size_t k = 0; k < count; ++k)
-    s.contacts[k].impulse = mix(first_.normal[k], second_.normal[k], share_of(k));
+    s.table.contacts[k].impulse = mix(first_.normal[k], second_.normal[k], share_of(k));
   with_friction(s.friction.model, [&]<class M>(M) {
     for (std::size_t k = 0; k < count; ++k) {
       const Vec4 tangential = mix(first_.tangential[k], second_.tangential[k], share_of(k));
-      s.friction.slides<M>()[k].impulse = M::from_space(s.contacts[k].normal, tangential);
+      s.table.slides<M>()[k].impulse = M::from_space(s.table.contacts[k].normal, tangential);
     }
   });
 }
@@ -84,7 +86,7 @@ void EnergyLimit::find_islands(const State &s, std::size_t count)
   joined_.clear();
   reserve_closely(joined_, count);
   for (std::size_t k = 0; k < count; ++k) {
-    const Contact &c = s.contacts[k];
+    const Contact &c = s.table.contacts[k];
     const bool pushes = first_.normal[k] != 0 || second_.normal[k] != 0;
     if (pushes && s.bodies[c.i][3] > 0 && s.bodies[c.j][3] > 0) joined_.push_back({c.i, c.j});
   }
@@ -98,24 +100,24 @@ void EnergyLimit::find_work(const State &s, std::size_t count, const Motion *bef
 {
   work.assign(islands_.count(), 0);
   for (std::size_t k = 0; s.friction.model == Model::frictionless && k < count; ++k) {
-    const Contact &c = s.contacts[k];
+    const Contact &c = s.table.contacts[k];
     const double first = before ? normal_velocity(c, before->bodies.data()) + normal_drift(s, k)
-                                : s.infos[k].speed_before;
+                                : s.table.infos[k].speed_before;
     const double after = normal_velocity(c, s.bodies.data()) + normal_drift(s, k) + 2 * impact_kick(s, k);
     work[islands_.of(grain_of(c, s.bodies.data()))] += 0.5 * c.impulse * (first + after);
   }
   with_friction(s.friction.model, [&]<class M>(M) {
     for (std::size_t k = 0; k < count; ++k) {
-      const Contact &c = s.contacts[k];
+      const Contact &c = s.table.contacts[k];
       const auto after = velocity<M>(c, s.bodies.data(), s.friction.spins.data());
       using Velocity = Split<typename M::Tangent>;
       const Velocity first = before ? velocity<M>(c, before->bodies.data(), before->spins.data())
-                                    : Velocity{s.infos[k].speed_before, slip_at_start<M>(s, k)};
-      double twice = c.impulse * (first.n + after.n) + inner(s.friction.slides<M>()[k].impulse, first.t + after.t);
+                                    : Velocity{s.table.infos[k].speed_before, slip_at_start<M>(s, k)};
+      double twice = c.impulse * (first.n + after.n) + inner(s.table.slides<M>()[k].impulse, first.t + after.t);
       twice += 2 * c.impulse * impact_kick(s, k);
       if (!s.drift.of.empty()) {
         twice += (before ? 2 : 1) * c.impulse * normal_drift(s, k);   // speed_before has it
-        twice += 2 * inner(s.friction.slides<M>()[k].impulse, tangential_drift<M>(s, k));
+        twice += 2 * inner(s.table.slides<M>()[k].impulse, tangential_drift<M>(s, k));
       }
       work[islands_.of(grain_of(c, s.bodies.data()))] += 0.5 * twice;
     }
@@ -127,7 +129,7 @@ void EnergyLimit::find_work(const State &s, std::size_t count, const Motion *bef
 void EnergyLimit::allow_recovery(const State &s, std::size_t count)
 {
   for (std::size_t k = 0; k < count; ++k) {
-    const Contact &c = s.contacts[k];
+    const Contact &c = s.table.contacts[k];
     const double apart = std::max(0.0, normal_drift(s, k) - c.bias);
     limit_[islands_.of(grain_of(c, s.bodies.data()))] += apart * c.impulse;
   }
@@ -142,8 +144,8 @@ bool EnergyLimit::find_excess(State &s, std::size_t count, const Motion *before,
   limit_.assign(islands_.count(), 0);
   if (gives_back) allow_recovery(s, count);
   for (std::size_t k = 0; k < count; ++k) {
-    const Contact &c = s.contacts[k];
-    const double error = tolerances * tolerance(s, worth(s.infos[k])) * std::abs(c.impulse);
+    const Contact &c = s.table.contacts[k];
+    const double error = tolerances * tolerance(s, worth(s.table.infos[k])) * std::abs(c.impulse);
     limit_[islands_.of(grain_of(c, s.bodies.data()))] += error;
   }
   if (s.halo) limit_[0] = s.halo->sum(limit_[0]);

@@ -37,9 +37,9 @@ void fill_contact_rows(const State &s, double *row)
 {
   const int columns = contact_columns(s.settings);
   const double per_force = s.grains.force_to_acceleration;   // impulses are mass times velocity within
-  for (std::size_t k = 0; k < s.contacts.size(); ++k, row += columns) {
-    const Contact &c = s.contacts[k];
-    const ContactInfo &info = s.infos[k];
+  for (std::size_t k = 0; k < s.table.contacts.size(); ++k, row += columns) {
+    const Contact &c = s.table.contacts[k];
+    const ContactInfo &info = s.table.infos[k];
     const Sphere a = in_arrays(s, info.atom_i);
     const Vec4 point = a.centre - c.normal * (a.radius + 0.5 * info.gap);
     row[0] = s.grains.tag[info.atom_i];

@@ -45,6 +45,7 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
   options_.parameter = solver_parameter(settings_, *solver_);
   const Inertia inertia = settings_.inertia.value_or(dimension == 2 ? Inertia::disc : Inertia::sphere);
   state_.friction.model = choose_model(settings_, dimension);
+  state_.table.open_slides(state_.friction.model);
   state_.friction.spin_response = inertia == Inertia::disc ? disc_spin_response : sphere_spin_response;
 }
 
@@ -126,7 +127,7 @@ NSCD_HOT void Step::start_contacts(std::size_t first, bool again)
 {
   law_->set_bias(state_, first);
   set_tangential_bias(state_, first, law_->tangential_restitution_in_bias(settings_));
-  const double added = keep_free_velocities(state_, first, state_.contacts.size());
+  const double added = keep_free_velocities(state_, first, state_.table.contacts.size());
   free_norm_ = std::hypot(again ? free_norm_ : 0, added);
   bound_approach(state_, first);
   if (!settings_.warmstart) return;
@@ -163,7 +164,7 @@ void Step::share_among_threads(std::size_t contacts)
   shared_among_threads_ = team_ && contacts >= worth_a_thread * std::size_t(team_->size());
   if (!shared_among_threads_) return;
   const bool moved = state_.slabs.order_contacts(state_, contacts);
-  if (moved && halo_) halo_->find_touching(state_.contacts);
+  if (moved && halo_) halo_->find_touching(state_.table.contacts);
 }
 
 // What is given up or accepted, and with friction Newton's law, is kept from making energy; what a custom solver
@@ -208,12 +209,12 @@ SolverReport Step::solve_problem(Problem &problem, const SolverOptions &options)
 bool Step::solve_part(const Part &part, int maxiter)
 {
   const auto start = Clock::now();
-  const std::span contacts = std::span(state_.contacts).first(part.contacts);
+  const std::span contacts = std::span(state_.table.contacts).first(part.contacts);
   Problem problem{state_.bodies, contacts, part.e, part.norm, workspace_, sliding(state_, part.e_t),
                   halo_.get()};
   problem.round_off = state_.round_off;
-  problem.infos = std::span(state_.infos).first(part.contacts);
-  if (settings_.overlap) problem.per_approach = std::span(state_.per_approach).first(part.contacts);
+  problem.infos = std::span(state_.table.infos).first(part.contacts);
+  if (settings_.overlap) problem.per_approach = std::span(state_.table.per_approach).first(part.contacts);
   problem.judges_contacts = true;
   problem.judges_islands = options_.stop == Stop::natural;
   SolverOptions options = options_;

@@ -14,8 +14,9 @@ namespace nscd {
 void Step::finish()
 {
   if (settings_.warmstart) memory_.remember(state_);
-  for (std::size_t k = 0; k < state_.impact_impulse.size(); ++k) state_.contacts[k].impulse += state_.impact_impulse[k];
-  add_slide_impulses(state_, state_.friction.impact_impulse);
+  ContactTable &table = state_.table;
+  for (std::size_t k = 0; k < table.impact_impulse.size(); ++k) table.contacts[k].impulse += table.impact_impulse[k];
+  add_slide_impulses(state_, state_.table.impact_tangential);
   tally_contacts();
 }
 
@@ -34,8 +35,8 @@ static double work_on_grains(const State &s)
     const Vec4 spin = s.friction.spins[i], start = start_spin(s, i);
     work += dot(spin - start - smooth_spin_kick(s, i), start + spin) / (b[3] * s.friction.spin_response);
   }
-  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
-    const Contact &c = s.contacts[k];
+  for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
+    const Contact &c = s.table.contacts[k];
     const Vec4 push = c.normal * c.impulse + tangential_impulse(s, k);
     if (s.bodies[c.i][3] == 0) work += 2 * dot(push, without_fourth(s.bodies[c.i]));
     if (s.bodies[c.j][3] == 0) work -= 2 * dot(push, without_fourth(s.bodies[c.j]));
@@ -49,9 +50,9 @@ NSCD_HOT void Step::tally_contacts()
   const State &s = state_;
   double overlap = 0, ratio = 0, work = tangential_work(s);
   double pushed = 0, passed2 = 0;   // impulses, and how far their pairs pass each other, squared and weighed by them
-  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
-    const Contact &c = s.contacts[k];
-    ContactInfo &info = state_.infos[k];
+  for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
+    const Contact &c = s.table.contacts[k];
+    ContactInfo &info = state_.table.infos[k];
     work += c.impulse * (info.speed_before + normal_velocity(c, s.bodies.data()));
     const Sphere &a = s.spheres[info.atom_i];
     Vec4 separation = a.centre + s.displacement[c.i];

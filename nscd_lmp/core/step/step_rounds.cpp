@@ -25,7 +25,7 @@ bool Step::doubts_contacts() const
 {
   constexpr double few = 0.05;
   if (sought_ != Sought::foreseen) return false;
-  double counts[] = {double(state_.unforeseen), double(state_.contacts.size())};
+  double counts[] = {double(state_.unforeseen), double(state_.table.contacts.size())};
   if (halo_) halo_->sum(counts);
   return counts[0] > few * counts[1];
 }
@@ -37,11 +37,10 @@ void Step::begin_rounds()
   report_.seconds_solver = 0;
   report_.converged = true;
   energy_limited_ = false;
-  state_.impact_impulse.clear();
+  state_.table.close_impacts();
   state_.courses.clear();
-  state_.friction.impact_impulse.clear();
   place_slides(state_, 0);
-  if (halo_) halo_->share_contacts(state_.bodies, state_.contacts);
+  if (halo_) halo_->share_contacts(state_.bodies, state_.table.contacts);
   if (!law_->resolves_impacts(settings_)) return;
   free_bodies_ = state_.bodies;
   free_spins_ = state_.friction.spins;
@@ -68,18 +67,18 @@ void Step::solve()
     }
     start_contacts(first, again && !impacts_first);
     if (differently && !impacts_first) start_turned();
-    const Part part{state_.contacts.size(), e, e_t, free_norm_};
+    const Part part{state_.table.contacts.size(), e, e_t, free_norm_};
     solved = !briefly || sweep_briefly(part, sweeps);
     if (!briefly) solve_within_energy(part, EnergyLimit::From::step);
     calmed_ = !briefly && !report_.converged ? calm_.slow_down(state_, part.contacts) : Calm::Found{};
     if (halo_) refresh_copies(state_);
     differently = law_->displace(state_, calmed_.bodies);
-    first = state_.contacts.size();
+    first = state_.table.contacts.size();
     grows = promote() || differently;
     sweeps *= 2;
     briefly = briefly && grows && sweeps <= most_sweeps;
   }
-  report_.contacts = std::int64_t(sum_everywhere(state_, double(state_.contacts.size())));
+  report_.contacts = std::int64_t(sum_everywhere(state_, double(state_.table.contacts.size())));
   report_.energy_limited += energy_limited_;
   report_.jammed = calmed_.jammed;
   judge();
@@ -88,7 +87,7 @@ void Step::solve()
 // Whether watched pairs have become contacts.
 bool Step::promote()
 {
-  const std::size_t before = state_.contacts.size();
+  const std::size_t before = state_.table.contacts.size();
   std::size_t more = 0;
   watch_unlisted();
   together([&] {
@@ -98,7 +97,7 @@ bool Step::promote()
   });
   if (sum_everywhere(state_, double(more)) == 0) return false;
   place_slides(state_, before);
-  if (halo_) halo_->share_contacts(state_.bodies, state_.contacts);
+  if (halo_) halo_->share_contacts(state_.bodies, state_.table.contacts);
   return true;
 }
 
@@ -111,7 +110,7 @@ void Step::resolve_impacts_first(bool again)
     state_.friction.spins = free_spins_;
     place_slides(state_, 0);
   }
-  for (Contact &c : state_.contacts) c.impulse = 0;
+  for (Contact &c : state_.table.contacts) c.impulse = 0;
   const double tol = options_.stop == Stop::natural && !settings_.frictional() ? tol_of_impacts : 1;
   report_.impacts_left = law_->impacts(state_, [this, tol](std::size_t count) {
     const double norm = keep_free_velocities(state_, 0, count);

@@ -41,18 +41,19 @@ NSCD_INLINE Vec4 turned_impulse(const SpatialImpulse &e, const Vec4 &normal)
 template <class M, class Memory>
 NSCD_HOT void remember_all(const State &s, Memory &memory)
 {
-  const auto &slides = s.friction.slides<M>();
-  memory.remember(s.infos, [&](std::size_t k) { return entry(s.contacts[k], s.infos[k], slides[k]); });
+  const auto &slides = s.table.slides<M>();
+  const ContactTable &table = s.table;
+  memory.remember(table.infos, [&](std::size_t k) { return entry(table.contacts[k], table.infos[k], slides[k]); });
 }
 
 template <class M, class Memory>
 NSCD_HOT void recall_all(State &s, const Memory &memory, std::size_t first)
 {
-  auto &slides = s.friction.slides<M>();
-  for (std::size_t k = first; k < s.contacts.size(); ++k) {
-    if (k + prefetch_distance < s.infos.size()) memory.prefetch(s.infos[k + prefetch_distance].key);
-    const auto *known = memory.recall(s.infos[k].key);
-    Contact &c = s.contacts[k];
+  auto &slides = s.table.slides<M>();
+  for (std::size_t k = first; k < s.table.contacts.size(); ++k) {
+    if (k + prefetch_distance < s.table.infos.size()) memory.prefetch(s.table.infos[k + prefetch_distance].key);
+    const auto *known = memory.recall(s.table.infos[k].key);
+    Contact &c = s.table.contacts[k];
     c.impulse = known ? known->normal : 0;
     slides[k].impulse = known ? turned_impulse(*known, c.normal) : typename M::Tangent{};
     if (!known) continue;
@@ -67,7 +68,9 @@ void WarmStart::remember(const State &s)
 {
   switch (s.friction.model) {
     case Model::frictionless:
-      normal_.remember(s.infos, [&](std::size_t k) { return NormalImpulse{s.infos[k].key, s.contacts[k].impulse}; });
+      normal_.remember(s.table.infos, [&](std::size_t k) {
+        return NormalImpulse{s.table.infos[k].key, s.table.contacts[k].impulse};
+      });
       break;
     case Model::planar: remember_all<Planar>(s, planar_); break;
     case Model::spatial: remember_all<Spatial>(s, spatial_); break;
@@ -76,10 +79,10 @@ void WarmStart::remember(const State &s)
 
 NSCD_HOT void WarmStart::recall_normal(State &s, std::size_t first) const
 {
-  for (std::size_t k = first; k < s.contacts.size(); ++k) {
-    if (k + prefetch_distance < s.infos.size()) normal_.prefetch(s.infos[k + prefetch_distance].key);
-    const NormalImpulse *known = normal_.recall(s.infos[k].key);
-    Contact &c = s.contacts[k];
+  for (std::size_t k = first; k < s.table.contacts.size(); ++k) {
+    if (k + prefetch_distance < s.table.infos.size()) normal_.prefetch(s.table.infos[k + prefetch_distance].key);
+    const NormalImpulse *known = normal_.recall(s.table.infos[k].key);
+    Contact &c = s.table.contacts[k];
     c.impulse = known ? known->normal : 0;
     apply_impulse(c, c.impulse, s.bodies.data());
   }

@@ -35,19 +35,18 @@ static Scene flat_bed(Random &random)
 struct Sizes {
   std::size_t contacts = 0, watched = 0, pairs = 0, impacts = 0;
   std::size_t room = 0;   // for watched pairs, of which there are most ahead of the solve
-  std::size_t meetings = 0;   // room for those of a round of impacts
   explicit Sizes(const nscd::State &state) :
-      contacts(state.contacts.size()), watched(state.near.size()), impacts(state.impact_impulse.size()),
-      room(state.near.capacity()), meetings(state.courses.moment.capacity())
+      contacts(state.table.contacts.size()), watched(state.near.size()), impacts(state.table.impact_impulse.size()),
+      room(state.near.capacity())
   {
-    for (const auto &info : state.infos) pairs += info.atom_j >= 0;
+    for (const auto &info : state.table.infos) pairs += info.atom_j >= 0;
     for (const auto &near : state.near) pairs += near.pair.atom_j >= 0;
   }
   Sizes() = default;
   bool within(const Sizes &s) const
   {
     return contacts <= s.contacts && watched <= s.watched && pairs <= s.pairs && impacts <= s.impacts &&
-        room <= s.room && meetings <= s.meetings;
+        room <= s.room;
   }
   void widen(const Sizes &s)
   {
@@ -56,7 +55,6 @@ struct Sizes {
     pairs = std::max(pairs, s.pairs);
     impacts = std::max(impacts, s.impacts);
     room = std::max(room, s.room);
-    meetings = std::max(meetings, s.meetings);
   }
 };
 
