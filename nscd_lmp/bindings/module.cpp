@@ -154,7 +154,7 @@ nb::list solver_table()
 nb::list law_table()
 {
   nb::list table;
-  for (const auto &l : nscd::laws()) {
+  for (const auto &l : nscd::schemes()) {
     nb::dict row;
     row["name"] = std::string(l.name);
     row["title"] = std::string(l.title);

@@ -22,7 +22,7 @@
 #include "scene/contact_plane.hpp"
 #include "scene/drift_of.hpp"
 #include "scheme/displacements.hpp"
-#include "scheme/law.hpp"
+#include "scheme/scheme.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -48,13 +48,9 @@ NSCD_HOT void set_biases(State &s, std::size_t first)
   }
 }
 
-class Gap final : public Law {
+class Gap final : public Scheme {
  public:
-  double moment() const override { return 0.5; }
-  bool resolves_impacts(const Settings &settings) const override
-  {
-    return settings.restitution > 0 || settings.e_t > 0;
-  }
+  explicit Gap(const Settings &s) : Scheme({.moment = 0.5, .impacts_first = s.restitution > 0 || s.e_t > 0}) {}
   bool impacts(State &s, const SolvePart &solve) override { return resolve_impacts(s, bends_, solve); }
   void set_bias(State &s, std::size_t first) override { set_biases(s, first); }
   bool displace(State &s, std::span<const char> jammed) override { return displacements_.fill(s, jammed); }
@@ -66,6 +62,7 @@ class Gap final : public Law {
 
 }    // namespace
 
-static const RegisterLaw gap({20, "gap", "gap", true, [] { return std::unique_ptr<Law>(new Gap); }});
+static const RegisterScheme gap(
+    {20, "gap", "gap", true, [](const Settings &s) { return std::unique_ptr<Scheme>(new Gap(s)); }});
 
 }    // namespace nscd

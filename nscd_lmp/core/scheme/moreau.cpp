@@ -12,19 +12,15 @@
 // on something round is pushed on, since the normal is that at q_m and the force that at q_k: its angular momentum
 // grows as exp((1 - theta) dt f t / (m r)), r being the radius of its path.
 #include "scene/drift_of.hpp"
-#include "scheme/law.hpp"
+#include "scheme/scheme.hpp"
 
 namespace nscd {
 
 namespace {
 
-class Moreau final : public Law {
+class Moreau final : public Scheme {
  public:
-  double prediction(const Settings &settings) const override { return 1 - settings.theta; }
-
-  double restitution_in_bias(const Settings &settings) const override { return settings.restitution; }
-
-  double tangential_restitution_in_bias(const Settings &settings) const override { return settings.e_t; }
+  explicit Moreau(const Settings &s) : Scheme({.prediction = 1 - s.theta, .e = s.restitution, .e_t = s.e_t}) {}
 
   void set_bias(State &s, std::size_t first) override
   {
@@ -47,6 +43,7 @@ class Moreau final : public Law {
 
 }    // namespace
 
-static const RegisterLaw moreau({10, "moreau", "Moreau-Jean", false, [] { return std::unique_ptr<Law>(new Moreau); }});
+static const RegisterScheme moreau(
+    {10, "moreau", "Moreau-Jean", false, [](const Settings &s) { return std::unique_ptr<Scheme>(new Moreau(s)); }});
 
 }    // namespace nscd

@@ -11,13 +11,13 @@
 namespace nscd {
 
 // Warm start remembers what lasts, the contacts' impulses; what the step reports has the impacts' too.
-void Step::finish()
+Step::Tally Step::finish(double calmed)
 {
   if (settings_.warmstart) memory_.remember(state_);
   ContactTable &table = state_.table;
   for (std::size_t k = 0; k < table.impact_impulse.size(); ++k) table.contacts[k].impulse += table.impact_impulse[k];
   add_slide_impulses(state_, state_.table.impact_tangential);
-  tally_contacts();
+  return tally_contacts(calmed);
 }
 
 // Twice what contacts have done to grains, without what moving obstacles gave, J in the units of m v^2. Where planes
@@ -45,7 +45,7 @@ static double work_on_grains(const State &s)
 }
 
 // Overlap at q_{k+1}, and the energy the contacts took: -sum p (u^k + u^{k+1}) / 2, exact for any step.
-NSCD_HOT void Step::tally_contacts()
+NSCD_HOT Step::Tally Step::tally_contacts(double calmed)
 {
   const State &s = state_;
   double overlap = 0, ratio = 0, work = tangential_work(s);
@@ -76,16 +76,12 @@ NSCD_HOT void Step::tally_contacts()
   const Overlap &watched = s.watched_overlap;
   double largest[] = {std::max(overlap, watched.length), std::max(ratio, watched.ratio)};
   if (halo_) halo_->max(largest);
-  report_.largest_overlap = largest[0];
-  report_.largest_overlap_ratio = largest[1];
   if (!s.courses.start.empty()) work = work_on_grains(s);
-  work -= 2 * calmed_.energy;
+  work -= 2 * calmed;
   double sums[] = {work, pushed, passed2};
   if (halo_) halo_->sum(sums);
-  report_.dissipated_in_step = -0.5 * s.grains.square_to_energy * sums[0];
-  report_.pushed = sums[1];
-  report_.passed2 = 0.25 * s.dt * s.dt * sums[2];
-  report_.dissipated += report_.dissipated_in_step;
+  const double dissipated = -0.5 * s.grains.square_to_energy * sums[0];
+  return {{largest[0], largest[1]}, dissipated, sums[1], 0.25 * s.dt * s.dt * sums[2]};
 }
 
 void Step::write_back()
@@ -107,6 +103,32 @@ void Step::write_back()
   if (state_.friction.model != Model::frictionless) write_back_spins(state_);
   drifts_.leave(state_);
   belts_.see(g);
+}
+
+void Step::write_report(const Seen &seen, const Rounds::Result &rounds, const Tally &tally, double seconds)
+{
+  const Solves::Outcome &solved = solves_.outcome();
+  totals_.dissipated += tally.dissipated;
+  report_ = {.contacts = rounds.contacts,
+             .iterations = solved.iterations,
+             .criterion = solved.criterion,
+             .largest_overlap = tally.largest.length,
+             .largest_overlap_ratio = tally.largest.ratio,
+             .largest_move_ratio = seen.move_ratio,
+             .pushed = tally.pushed,
+             .passed2 = tally.passed2,
+             .dissipated_in_step = tally.dissipated,
+             .dissipated = totals_.dissipated,
+             .unconverged = totals_.unconverged,
+             .accepted_steps = totals_.accepted,
+             .energy_limited = totals_.energy_limited,
+             .unread_torque = seen.unread_torque,
+             .converged = solved.converged,
+             .accepted = solved.accepted,
+             .jammed = rounds.jammed,
+             .impacts_left = rounds.impacts_left,
+             .seconds_contacts = seconds - solved.seconds,
+             .seconds_solver = solved.seconds};
 }
 
 }    // namespace nscd

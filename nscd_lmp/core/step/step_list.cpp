@@ -102,7 +102,7 @@ void Step::require_list(double speed)
   free_motion(missed_.motion(), state_, prediction_, look_ahead_);
   if (!missed_.find(state_, 0)) return;
   const double cutoff = cutoff_to_type(state_, missed_);
-  together([&] {
+  together(halo_.get(), [&] {
     if (!missed_.pairs().empty()) refuse_missed(cutoff);
     refuse_unless_all_known();
   });
@@ -129,7 +129,7 @@ void Step::watch_unlisted()
 void Step::refuse_unwatchable()
 {
   const double cutoff = cutoff_to_type(state_, missed_);
-  together([&] {
+  together(halo_.get(), [&] {
     refuse_unless_all_known();
     if (missed_.excludes() && !missed_.pairs().empty()) refuse_missed(cutoff);
   });
