@@ -36,12 +36,12 @@ constexpr double tolerated_overlap = 3e-5;   // of the smaller radius, with fric
 
 NSCD_HOT void set_biases(State &s, std::size_t first)
 {
-  const double rate = 1 / s.dt, back = s.settings.recovery / s.dt;
+  const double rate = 1 / s.in.dt, back = s.in.settings.recovery / s.in.dt;
   const double tolerated = s.friction.model == Model::frictionless ? 0.0 : tolerated_overlap;
   for (std::size_t k = first; k < s.table.contacts.size(); ++k) {
     const ContactInfo &info = s.table.infos[k];
     const double overlap = std::max(0.0, -info.gap - tolerated * info.radius);
-    const double cap = recovery_cap * info.kick + tolerance(s, worth(info)) + sudden_approach(s, k);
+    const double cap = recovery_cap * info.kick + tolerance(s.scales, worth(info)) + sudden_approach(s, k);
     const double plane = open_gap(s, k);
     s.table.contacts[k].bias =
         (info.gap > 0 ? plane * rate : (plane - info.gap) * rate - std::min(overlap * back, cap)) + normal_drift(s, k);

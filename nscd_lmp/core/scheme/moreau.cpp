@@ -24,7 +24,7 @@ class Moreau final : public Scheme {
 
   void set_bias(State &s, std::size_t first) override
   {
-    const double e = s.settings.restitution;
+    const double e = s.in.settings.restitution;
     if (e == 0 && s.drift.of.empty()) return;
     for (std::size_t k = first; k < s.table.contacts.size(); ++k)
       s.table.contacts[k].bias = e * s.table.infos[k].speed_before + normal_drift(s, k);
@@ -32,10 +32,10 @@ class Moreau final : public Scheme {
 
   bool displace(State &s, std::span<const char>) override
   {
-    const double step = s.settings.theta * s.dt;
+    const double step = s.in.settings.theta * s.in.dt;
     for (int i = 0; i < s.moving(); ++i) {
-      const Body &b = s.bodies[i];
-      s.displacement[i] = Vec4{b[0], b[1], b[2], 0} * (way(s, i) == Way::stands ? 0.0 : step);
+      const Body &b = s.motion.bodies[i];
+      s.motion.displacement[i] = Vec4{b[0], b[1], b[2], 0} * (way(s.motion, i) == Way::stands ? 0.0 : step);
     }
     return false;
   }

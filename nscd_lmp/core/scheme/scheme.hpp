@@ -33,9 +33,9 @@ class Scheme {
   // Returns whether some were left that matter, to be taken as inelastic.
   virtual bool impacts(State &, const SolvePart &) { return false; }
   // Fills the biases of the contacts from `first` on. Bodies have the velocities without these contacts,
-  // state.grains.v has v_k.
+  // state.in.grains.v has v_k.
   virtual void set_bias(State &, std::size_t first) = 0;
-  // Fills state.displacement, from where contacts were sought to q_{k+1}; bodies have v_{k+1}. Returns whether the
+  // Fills motion.displacement, from where contacts were sought to q_{k+1}; bodies have v_{k+1}. Returns whether the
   // step has to be solved again, with what the scheme has changed; the same on all ranks. `jammed`: of the moving
   // bodies, or empty; contacts of these have no solution, and nothing is changed for them.
   virtual bool displace(State &, std::span<const char> jammed) = 0;

@@ -42,10 +42,10 @@ void Rounds::begin()
   state_.table.close_impacts();
   state_.courses.clear();
   place_slides(state_, 0);
-  if (state_.halo) state_.halo->share_contacts(state_.bodies, state_.table.contacts);
+  if (state_.exec.halo) state_.exec.halo->share_contacts(state_.motion.bodies, state_.table.contacts);
   if (!impacts_first()) return;
-  free_bodies_ = state_.bodies;
-  free_spins_ = state_.friction.spins;
+  free_bodies_ = state_.motion.bodies;
+  free_spins_ = state_.motion.spins;
 }
 
 // Brief if some sweeps are likely to make contacts of watched pairs.
@@ -53,8 +53,8 @@ Rounds::Effort Rounds::first_effort() const
 {
   constexpr double few = 0.05;
   if (sought_ != Sought::foreseen) return Effort::full;
-  double counts[] = {double(state_.unforeseen), double(state_.table.size())};
-  if (state_.halo) state_.halo->sum(counts);
+  double counts[] = {double(state_.search.unforeseen), double(state_.table.size())};
+  if (state_.exec.halo) state_.exec.halo->sum(counts);
   return counts[0] > few * counts[1] ? Effort::brief : Effort::full;
 }
 
@@ -85,7 +85,7 @@ bool Rounds::solve(const Next &now)
 // Moves the grains, and sees what that asks for.
 Rounds::Next Rounds::look_on(const Next &now, bool solved, const PairList &pairs)
 {
-  if (state_.halo) refresh_copies(state_);
+  if (state_.exec.halo) refresh_copies(state_);
   const bool turned = scheme_.displace(state_, calmed_.bodies);
   const std::size_t before = state_.table.size();
   const bool more = promote(pairs);
@@ -104,8 +104,9 @@ NSCD_HOT void Rounds::start_contacts(std::size_t first, bool goes_on)
   const double added = keep_free_velocities(state_, first, state_.table.size());
   free_norm_ = std::hypot(goes_on ? free_norm_ : 0, added);
   bound_approach(state_, first);
-  if (!state_.settings.warmstart) return;
-  change_across(state_.halo, state_.bodies, state_.friction.spins.data(), [&] { memory_.recall(state_, first); });
+  if (!state_.in.settings.warmstart) return;
+  Motion &motion = state_.motion;
+  change_across(state_.exec.halo, motion.bodies, motion.spins.data(), [&] { memory_.recall(state_, first); });
 }
 
 // Biases once the scheme has turned some contacts.
@@ -122,14 +123,14 @@ bool Rounds::promote(const PairList &pairs)
   const std::size_t before = state_.table.size();
   std::size_t more = 0;
   watch_unlisted_();
-  together(state_.halo, [&] {
+  together(state_.exec.halo, [&] {
     watch_farther(state_, pairs);
     if (looks_ahead_) more = promote_near(state_);
     else look_at_near(state_);
   });
   if (sum_everywhere(state_, double(more)) == 0) return false;
   place_slides(state_, before);
-  if (state_.halo) state_.halo->share_contacts(state_.bodies, state_.table.contacts);
+  if (state_.exec.halo) state_.exec.halo->share_contacts(state_.motion.bodies, state_.table.contacts);
   return true;
 }
 
@@ -137,18 +138,18 @@ void Rounds::resolve_impacts_first(Reason reason)
 {
   if (reason != Reason::first) {
     solves_.take_back();
-    state_.bodies = free_bodies_;
-    state_.friction.spins = free_spins_;
+    state_.motion.bodies = free_bodies_;
+    state_.motion.spins = free_spins_;
     place_slides(state_, 0);
   }
-  const Settings &settings = state_.settings;
+  const Settings &settings = state_.in.settings;
   for (Contact &c : state_.table.contacts) c.impulse = 0;
   const double tol = solves_.options().stop == Stop::natural && !settings.frictional() ? tol_of_impacts : 1;
   impacts_left_ = scheme_.impacts(state_, [this, tol](std::size_t count) {
     const double norm = keep_free_velocities(state_, 0, count);
     bound_approach_of_impacts(state_, count);
     solves_.begin_budget();
-    const Settings &s = state_.settings;
+    const Settings &s = state_.in.settings;
     solves_.solve({count, s.restitution, s.e_t, norm, tol}, EnergyLimit::From::solve);
   });
 }

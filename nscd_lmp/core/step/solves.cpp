@@ -65,8 +65,8 @@ void Solves::share_among_threads(std::size_t contacts)
   constexpr std::size_t worth_a_thread = 1000;
   shared_among_threads_ = team_ && contacts >= worth_a_thread * std::size_t(team_->size());
   if (!shared_among_threads_) return;
-  const bool moved = state_.slabs.order_contacts(state_, contacts);
-  if (moved && state_.halo) state_.halo->find_touching(state_.table.contacts);
+  const bool moved = state_.exec.slabs.order_contacts(state_, contacts);
+  if (moved && state_.exec.halo) state_.exec.halo->find_touching(state_.table.contacts);
 }
 
 bool Solves::sweep_briefly(const Part &part, int sweeps)
@@ -99,8 +99,8 @@ void Solves::solve(const Part &part, EnergyLimit::From from)
 
 SolverReport Solves::solve_problem(Problem &problem, const SolverOptions &options)
 {
-  if (!custom_ && (!state_.halo || solver_->ranks)) return solver_->solve(problem, options);
-  if (state_.halo)
+  if (!custom_ && (!state_.exec.halo || solver_->ranks)) return solver_->solve(problem, options);
+  if (state_.exec.halo)
     return solve_by_ranks(problem, options, [&] {
       Problem own = problem;
       own.halo = nullptr;
@@ -116,15 +116,16 @@ SolverReport Solves::solve_problem(Problem &problem, const SolverOptions &option
 Problem Solves::problem_of(const Part &part)
 {
   const std::span contacts = std::span(state_.table.contacts).first(part.contacts);
-  Problem problem{state_.bodies, contacts, part.e, part.norm, workspace_, sliding(state_, part.e_t), state_.halo};
-  problem.round_off = state_.round_off;
+  Problem problem{state_.motion.bodies, contacts, part.e, part.norm, workspace_, sliding(state_, part.e_t),
+                  state_.exec.halo};
+  problem.round_off = state_.scales.round_off;
   problem.infos = std::span(state_.table.infos).first(part.contacts);
   if (settings_.overlap) problem.per_approach = std::span(state_.table.per_approach).first(part.contacts);
   problem.judges_contacts = true;
   problem.judges_islands = options_.stop == Stop::natural;
   if (shared_among_threads_) {
     problem.team = team_.get();
-    problem.parts = &state_.slabs.parts();
+    problem.parts = &state_.exec.slabs.parts();
   }
   return problem;
 }

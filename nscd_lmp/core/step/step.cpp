@@ -23,7 +23,7 @@ static double seconds(Clock::time_point from, Clock::time_point to)
 
 Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *ranks) :
     settings_(checked(settings, dimension)), scheme_(find_scheme(settings_.law).make(settings_)),
-    state_{.settings = settings_, .grains = {}, .dimension = dimension},
+    state_{.in = {.settings = settings_, .dimension = dimension}},
     halo_(ranks && ranks->count() > 1 ? std::make_unique<Halo>(*ranks) : nullptr),
     prediction_(scheme_->constants.prediction), look_ahead_(find_scheme(settings_.law).looks_ahead ? 1 : 0),
     solves_(state_, settings_, std::move(custom), looks_ahead()),
@@ -32,9 +32,9 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
     rounds_(state_, *scheme_, solves_, memory_, sought_, looks_ahead(), [this] { watch_unlisted(); }),
     crowding_(nscd::crowding(settings_.threads, ranks))
 {
-  state_.halo = halo_.get();
-  state_.slabs = Slabs(settings_.threads);
-  (*settings_.criterion == Stop::natural ? state_.tol_of_worth : state_.tol_absolute) = *settings_.tol;
+  state_.exec.halo = halo_.get();
+  state_.exec.slabs = Slabs(settings_.threads);
+  (*settings_.criterion == Stop::natural ? state_.scales.tol_of_worth : state_.scales.tol_absolute) = *settings_.tol;
   const Inertia inertia = settings_.inertia.value_or(dimension == 2 ? Inertia::disc : Inertia::sphere);
   state_.friction.model = choose_model(settings_, dimension);
   state_.table.open_slides(state_.friction.model);
@@ -54,9 +54,9 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
 {
   const auto start = Clock::now();
   if (!(dt > 0 && std::isfinite(dt))) fail("the timestep is ", dt, ": it must be > 0");
-  state_.dt = dt;
-  state_.lasting_moment = scheme_->constants.moment * dt;
-  state_.grains = grains;
+  state_.in.dt = dt;
+  state_.scales.lasting_moment = scheme_->constants.moment * dt;
+  state_.in.grains = grains;
   const Seen seen = prepare(pairs);
   together(halo_.get(), [&] { detect(state_, pairs, sought_); });
   const Rounds::Result rounds = rounds_.run(pairs);
@@ -76,13 +76,13 @@ Step::Seen Step::prepare(const PairList &pairs)
   Largest largest;
   double reduced[7];
   auto &[kick2, speed2, moved, unlisted, smallest, torque, grown] = reduced;
-  hold_still(state_.grains);
+  hold_still(state_.in.grains);
   together(halo_.get(), [&] {
-    if (state_.dimension == 2) require_planar(state_);
+    if (state_.in.dimension == 2) require_planar(state_);
     list_.inspect(state_, pairs);
-    if (state_.grains.watched) left_.require(state_, list_.is_new());
+    if (state_.in.grains.watched) left_.require(state_, list_.is_new());
   });
-  if (list_.is_new()) state_.slabs.forget();
+  if (list_.is_new()) state_.exec.slabs.forget();
   if (halo_ && list_.is_new()) {
     plan_copies(state_);
     if (settings_.warmstart) memory_.follow_grains(*halo_, state_.friction.model);
@@ -92,21 +92,21 @@ Step::Seen Step::prepare(const PairList &pairs)
   grown = drifts_.look(state_, list_.is_new());
   kick2 = largest.kick2, speed2 = largest.speed2, moved = list_.farthest_moved(state_), unlisted = -pairs.reach;
   smallest = -largest.smallest_radius;
-  torque = !remarks_.tell_of_torque() && has_unread_torque(state_.grains);
+  torque = !remarks_.tell_of_torque() && has_unread_torque(state_.in.grains);
   if (halo_) {
     share_motion(state_);
     halo_->max(reduced);
   }
   gather_images(state_, prediction_, look_ahead_, {kick2, speed2});
   drifts_.settle(state_, grown > 0, list_.is_new());
-  drifts_.place(state_, state_.dt * prediction_, look_ahead_);
+  drifts_.place(state_, state_.in.dt * prediction_, look_ahead_);
   listed_ = -unlisted;
   moved_ = moved + 0.5 * drifts_.neared();
   const double speed = std::sqrt(speed2) + state_.drift.fastest;
-  state_.round_off = 1e-14 * speed;
+  state_.scales.round_off = 1e-14 * speed;
   missed_.begin(pairs, listed_);
   require_list(speed);
-  return {torque > 0, state_.dt * speed / -smallest};
+  return {torque > 0, state_.in.dt * speed / -smallest};
 }
 
 void Step::count(const Solves::Outcome &solved)

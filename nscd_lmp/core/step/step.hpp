@@ -95,7 +95,7 @@ class Step {
  private:
   bool looks_ahead() const { return look_ahead_ > 0; }
   // How far around q_k contacts are sought, m, for a grain of this speed.
-  double longest_move(double speed) const { return state_.dt * speed * (look_ahead_ + prediction_); }
+  double longest_move(double speed) const { return state_.in.dt * speed * (look_ahead_ + prediction_); }
   // What is known of a step before its contacts are.
   struct Seen {
     bool unread_torque;

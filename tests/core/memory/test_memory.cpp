@@ -36,11 +36,12 @@ struct Sizes {
   std::size_t contacts = 0, watched = 0, pairs = 0, impacts = 0;
   std::size_t room = 0;   // for watched pairs, of which there are most ahead of the solve
   explicit Sizes(const nscd::State &state) :
-      contacts(state.table.contacts.size()), watched(state.near.size()), impacts(state.table.impact_impulse.size()),
-      room(state.near.capacity())
+      contacts(state.table.contacts.size()), watched(state.search.near.size()),
+      impacts(state.table.impact_impulse.size()),
+      room(state.search.near.capacity())
   {
     for (const auto &info : state.table.infos) pairs += info.atom_j >= 0;
-    for (const auto &near : state.near) pairs += near.pair.atom_j >= 0;
+    for (const auto &near : state.search.near) pairs += near.pair.atom_j >= 0;
   }
   Sizes() = default;
   bool within(const Sizes &s) const
