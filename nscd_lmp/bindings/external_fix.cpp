@@ -317,7 +317,7 @@ std::vector<std::string> ExternalFix::take_remarks()
 void ExternalFix::record(std::int64_t timestep)
 {
   const State &state = step_.state();
-  contact_rows_.resize(state.table.contacts.size() * contact_columns(state.settings));
+  contact_rows_.resize(state.table.contacts.size() * contact_columns(state.in.settings));
   fill_contact_rows(state, contact_rows_.data());
   const StepReport &report = step_.report();
   StatsRow row{timestep, {}, report.seconds_contacts, report.seconds_solver};

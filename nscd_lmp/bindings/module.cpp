@@ -21,7 +21,7 @@ using nscd::State;
 
 namespace {
 
-int body_index(const State &s, int body) { return body < s.moving() && s.bodies[body][3] > 0 ? body : -1; }
+int body_index(const State &s, int body) { return body < s.moving() && s.motion.bodies[body][3] > 0 ? body : -1; }
 
 // What friction adds to the contact system.
 void add_friction(nb::dict &d, const State &s, std::size_t n)
@@ -36,7 +36,7 @@ void add_friction(nb::dict &d, const State &s, std::size_t n)
       const auto pair = nscd::tangents(c.normal, s.friction.model);
       tangents[k * directions] = pair.first;
       if (directions == 2) tangents[k * directions + 1] = pair.second;
-      const auto slip = nscd::velocity<M>(c, s.bodies.data(), s.friction.spins.data()).t + bias(slide);
+      const auto slip = nscd::velocity<M>(c, s.motion.bodies.data(), s.motion.spins.data()).t + bias(slide);
       slips[k] = M::in_space(c.normal, slip);
       mu[k] = slide.mu;
     }
@@ -53,7 +53,7 @@ void add_friction(nb::dict &d, const State &s, std::size_t n)
 nb::dict contact_system(const State &s, std::size_t n, std::span<const double> start)
 {
   const auto &contacts = s.table.contacts;
-  const auto *bodies = s.bodies.data();
+  const auto *bodies = s.motion.bodies.data();
   nb::dict d;
   d["body_i"] = make_array<int>(n, 0, [&](auto k, auto) { return body_index(s, contacts[k].i); });
   d["body_j"] = make_array<int>(n, 0, [&](auto k, auto) { return body_index(s, contacts[k].j); });
@@ -154,7 +154,7 @@ nb::list solver_table()
 nb::list law_table()
 {
   nb::list table;
-  for (const auto &l : nscd::laws()) {
+  for (const auto &l : nscd::schemes()) {
     nb::dict row;
     row["name"] = std::string(l.name);
     row["title"] = std::string(l.title);

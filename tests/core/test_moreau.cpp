@@ -161,7 +161,7 @@ TEST(a_custom_solver_is_handed_the_problem_and_its_impulses_are_used)
     ++calls;
     const auto &c = state.table.contacts[0];
     CHECK(n == 1 && state.table.infos.size() == 1 && p.size() == 1 && p[0] == 0);
-    p[0] = -nscd::normal_velocity(c, state.bodies.data()) * c.w_inverse;
+    p[0] = -nscd::normal_velocity(c, state.motion.bodies.data()) * c.w_inverse;
   });
   scene.advance(step, 0.01);
   CHECK(calls == 1 && scene.v[2] == 0);

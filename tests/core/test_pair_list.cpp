@@ -78,7 +78,7 @@ TEST(images_may_change_with_each_new_list)
   scene.list_all_pairs();
   CHECK(scene.advance(step, 1e-9).contacts == 1);
   CHECK(find_contact(step.state(), 0, image) != nullptr);
-  CHECK(step.state().owner[image] == 2);
+  CHECK(step.state().atoms.owner[image] == 2);
 }
 
 TEST(a_full_list_is_refused)

@@ -53,7 +53,7 @@ static bool in_cones(const Step &step)
   bool inside = true;
   for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
     const int j = s.table.infos[k].atom_j;
-    const double mu = j < 0 ? s.settings.wall_friction(-1 - j) : s.settings.friction;
+    const double mu = j < 0 ? s.in.settings.wall_friction(-1 - j) : s.in.settings.friction;
     const double slack = 1e-7 * s.table.contacts[k].w_inverse * double(s.table.contacts.size());
     const double tangential = nscd::length(nscd::tangential_impulse(s, k)), normal = s.table.contacts[k].impulse;
     inside &= tangential <= slack + (normal > -slack ? mu * (normal + slack) : 0);

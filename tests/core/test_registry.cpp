@@ -1,5 +1,5 @@
 #include "check.hpp"
-#include "scheme/law.hpp"
+#include "scheme/scheme.hpp"
 #include "solver/solver.hpp"
 
 #include <cmath>
@@ -31,20 +31,20 @@ TEST(every_solver_entry_is_complete)
   }
 }
 
-TEST(every_law_entry_is_complete)
+TEST(every_scheme_entry_is_complete)
 {
-  CHECK(nscd::laws().size() >= 2);
-  for (const auto &entry : nscd::laws()) {
-    CHECK(&nscd::find_law(entry.name) == &entry);
+  CHECK(nscd::schemes().size() >= 2);
+  for (const auto &entry : nscd::schemes()) {
+    CHECK(&nscd::find_scheme(entry.name) == &entry);
     CHECK(!entry.title.empty());
-    CHECK(entry.make() != nullptr);
+    CHECK(entry.make(nscd::Settings{}) != nullptr);
   }
 }
 
 TEST(unknown_names_are_refused_with_all_choices)
 {
   CHECK_ERROR(nscd::find_solver("newton"), "unknown solver 'newton'");
-  CHECK_ERROR(nscd::find_law("hertz"), "unknown law 'hertz'");
+  CHECK_ERROR(nscd::find_scheme("hertz"), "unknown law 'hertz'");
   for (const auto &entry : nscd::solvers()) CHECK_ERROR(nscd::find_solver("PDAS"), std::string(entry.name));
-  for (const auto &entry : nscd::laws()) CHECK_ERROR(nscd::find_law(""), std::string(entry.name));
+  for (const auto &entry : nscd::schemes()) CHECK_ERROR(nscd::find_scheme(""), std::string(entry.name));
 }

@@ -50,7 +50,7 @@ TEST(the_default_tolerance_follows_the_scene)
     scene.advance(step, 1e-3);
     CHECK(step.report().converged);
     const nscd::State &s = step.state();
-    CHECK_NEAR(nscd::tolerance(s, nscd::worth(s.table.infos[0])), 1e-3 * 10 * scale * 1e-3, 1e-12 * scale);
+    CHECK_NEAR(nscd::tolerance(s.scales, nscd::worth(s.table.infos[0])), 1e-3 * 10 * scale * 1e-3, 1e-12 * scale);
     iterations[large] = step.report().iterations;
   }
   CHECK(iterations[0] == iterations[1] && iterations[0] > 10);

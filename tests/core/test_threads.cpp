@@ -88,7 +88,7 @@ TEST(team_wakes_after_a_rest)
 // The invariant that makes sweeps of threads those of Gauss-Seidel.
 static void check_parts(const nscd::State &s, int threads)
 {
-  const Parts &parts = s.slabs.parts();
+  const Parts &parts = s.exec.slabs.parts();
   std::size_t seen = 0;
   for (int part = 0; part < parts.count(); ++part) seen += parts.range(part).size();
   CHECK(seen == s.table.contacts.size());
@@ -116,7 +116,7 @@ TEST(parts_that_are_swept_at_the_same_time_share_no_body)
     scene.advance(step, 1e-3);
     CHECK(step.report().contacts > 1000 * threads);
     check_parts(step.state(), threads);
-    const Parts &parts = step.state().slabs.parts();
+    const Parts &parts = step.state().exec.slabs.parts();
     for (int t = 0; t < threads; ++t) CHECK(parts.range(t).size() > step.state().table.contacts.size() / (2 * threads));
   }
 }

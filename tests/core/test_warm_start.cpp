@@ -64,15 +64,15 @@ TEST(directions_that_do_not_turn_or_turn_over_keep_the_impulse)
 template <class M>
 struct RememberedContact {
   nscd::Settings chosen{};
-  nscd::State state{.settings = chosen, .grains = {}};
+  nscd::State state{.in = {.settings = chosen}};
 
   RememberedContact(const Vec4 &normal, double impulse, const Vec4 &tangential)
   {
     constexpr bool planar = std::is_same_v<M, Planar>;
     state.friction.model = planar ? nscd::Model::planar : nscd::Model::spatial;
     state.friction.spin_response = planar ? nscd::disc_spin_response : nscd::sphere_spin_response;
-    state.bodies = {Vec4{0, 0, 0, 0.5}, Vec4{0, 0, 0, 0.25}};
-    state.friction.spins.resize(2);
+    state.motion.bodies = {Vec4{0, 0, 0, 0.5}, Vec4{0, 0, 0, 0.25}};
+    state.motion.spins.resize(2);
     state.table.open_slides(state.friction.model);
     state.table.resize(1);
     state.table.contacts[0] = {normal, 0, 1 / 0.75, impulse, 0, 1};
@@ -108,11 +108,11 @@ static void check_recall(const Vec4 &before, const Vec4 &now, const Vec4 &tangen
   const Vec4 whole = now * 3 + expected;
   CHECK(nscd::length(fresh.impulse_on_first() - whole) < 1e-14);
   const auto &s = fresh.state;
-  CHECK(nscd::length(nscd::without_fourth(s.bodies[0]) - whole * 0.5) < 1e-14);
-  CHECK(nscd::length(nscd::without_fourth(s.bodies[1]) + whole * 0.25) < 1e-14);
+  CHECK(nscd::length(nscd::without_fourth(s.motion.bodies[0]) - whole * 0.5) < 1e-14);
+  CHECK(nscd::length(nscd::without_fourth(s.motion.bodies[1]) + whole * 0.25) < 1e-14);
   const Vec4 turn = nscd::cross(now, expected) * -s.friction.spin_response;
-  CHECK(nscd::length(s.friction.spins[0] - turn * 0.5) < 1e-14);
-  CHECK(nscd::length(s.friction.spins[1] - turn * 0.25) < 1e-14);
+  CHECK(nscd::length(s.motion.spins[0] - turn * 0.5) < 1e-14);
+  CHECK(nscd::length(s.motion.spins[1] - turn * 0.25) < 1e-14);
 }
 
 TEST(recalled_impulses_do_not_depend_on_which_grain_is_first)
@@ -137,7 +137,7 @@ TEST(contacts_that_were_not_there_start_from_nothing)
   fresh.state.table.infos[0].key = 78;
   memory.recall(fresh.state, 0);
   CHECK(nscd::length(fresh.impulse_on_first()) == 0);
-  CHECK(nscd::length(nscd::without_fourth(fresh.state.bodies[0])) == 0);
+  CHECK(nscd::length(nscd::without_fourth(fresh.state.motion.bodies[0])) == 0);
 }
 
 // Impulse in space of the only contact, on grain 0, from what a solver is handed.
@@ -155,7 +155,7 @@ static void stop_both(const nscd::State &s, std::span<double> p)
 {
   const nscd::Contact &c = s.table.contacts[0];
   const nscd::Tangents t = nscd::tangents(c.normal, s.friction.model);
-  const Vec4 u = nscd::without_fourth(s.bodies[c.i] - s.bodies[c.j]);
+  const Vec4 u = nscd::without_fourth(s.motion.bodies[c.i] - s.motion.bodies[c.j]);
   p[0] = -c.w_inverse * nscd::dot(c.normal, u);
   const double tangential = -c.w_inverse / (1 + s.friction.spin_response);
   p[1] = tangential * nscd::dot(t.first, u);

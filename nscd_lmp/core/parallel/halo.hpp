@@ -136,4 +136,12 @@ class Halo {
   bool split_ = false;
 };
 
+// Runs `local`, on several ranks so that all fail if one does; `halo` null: on one.
+template <class Local>
+void together(Halo *halo, Local local)
+{
+  if (halo) halo->together(std::ref(local));
+  else local();
+}
+
 }    // namespace nscd

@@ -16,7 +16,7 @@ class Belts {
  public:
   // Remembers where obstacles are: at a run's start, and at the end of every step.
   void see(const Grains &grains);
-  // Fills state.ways and, if `paces`, state.paces for this rank's atoms. Obstacles that were not seen, since they came
+  // Fills motion.ways and, if `paces`, motion.paces of this rank's atoms. Obstacles that were not seen, since they came
   // from elsewhere, are taken to have moved by their velocity. Both are empty if no obstacle has a velocity.
   void find(State &state, bool paces) const;
 

@@ -34,9 +34,10 @@ Vec4 without_edges(Vec4 d, const Box &box)
 // The grain's index now; -1 if it is not here.
 int find_owned(const State &s, std::int32_t tag, int index)
 {
-  if (index < s.grains.owned && s.grains.tag[index] == tag) return index;
-  const auto at = std::lower_bound(s.own_tags.begin(), s.own_tags.end(), std::pair<std::int32_t, int>{tag, -1});
-  return at != s.own_tags.end() && at->first == tag ? at->second : -1;
+  if (index < s.in.grains.owned && s.in.grains.tag[index] == tag) return index;
+  const auto &tags = s.atoms.own_tags;
+  const auto at = std::lower_bound(tags.begin(), tags.end(), std::pair<std::int32_t, int>{tag, -1});
+  return at != s.atoms.own_tags.end() && at->first == tag ? at->second : -1;
 }
 
 Vec4 place(const Grains &g, int i)
@@ -121,17 +122,17 @@ bool BoxMotion::carries(const State &s, const BoxChange &change) const
   const Vec4 low{last_.low[0], last_.low[1], last_.low[2], 0}, shift{change.low[0], change.low[1], change.low[2], 0};
   double farthest = 0;
   for (const Sample &sample : samples_) farthest = std::max(farthest, length(gradient.at(sample.x - low) + shift));
-  if (s.halo) farthest = s.halo->max(farthest);
+  if (s.exec.halo) farthest = s.exec.halo->max(farthest);
   double counts[2] = {};   // that have stayed, that have been carried
   for (const Sample &sample : samples_) {
     const int i = find_owned(s, sample.tag, sample.index);
     const Vec4 carried = gradient.at(sample.x - low) + shift;
     const double enough = std::max(0.1 * farthest, 1e-12 * length(sample.x));
     if (i < 0 || length(carried) < enough) continue;
-    const Vec4 moved = without_edges(place(s.grains, i) - sample.x, last_);
+    const Vec4 moved = without_edges(place(s.in.grains, i) - sample.x, last_);
     ++counts[dot(carried, moved) > 0.5 * dot(carried, carried)];
   }
-  if (s.halo) s.halo->sum(counts);
+  if (s.exec.halo) s.exec.halo->sum(counts);
   if (counts[0] > 0 && counts[1] > 0)
     fail("the box carries some grains with it and leaves others where they are: give fix deform (or what else moves ",
          "the box and remaps positions) the group of all atoms, or take remap v or none");
@@ -140,20 +141,20 @@ bool BoxMotion::carries(const State &s, const BoxChange &change) const
 
 void BoxMotion::look(const State &s)
 {
-  const Box &box = *s.grains.box;
+  const Box &box = *s.in.grains.box;
   if (fresh_) see(box);
   jump_ = {};
   if (first_ && has_changed(jumped_)) {
     jump_rides_ = carries(s, jumped_);
     jump_ = jumped_.gradient(last_, !jump_rides_);
   }
-  run_ += s.dt;
+  run_ += s.in.dt;
   changes_now_ = box.changes_now;
   pace_.pass(first_ ? 0 : dt_);
   const BoxChange change = change_between(last_, box);
   last_ = box;
   if (has_changed(change)) {
-    if (pace_.since() == 0) pace_.pass(s.dt);   // ahead of the first step
+    if (pace_.since() == 0) pace_.pass(s.in.dt);   // ahead of the first step
     rides_ = carries(s, change);
     take(change, pace_.since());
     pace_.change();
@@ -162,17 +163,17 @@ void BoxMotion::look(const State &s)
     take({}, 1);
   }
   first_ = false;
-  dt_ = s.dt;
+  dt_ = s.in.dt;
 }
 
 void BoxMotion::leave(const State &s)
 {
   samples_.clear();
-  const int every = 1 + s.grains.owned / samples;
-  for (int i = 0; i < s.grains.owned; i += every) {
+  const int every = 1 + s.in.grains.owned / samples;
+  for (int i = 0; i < s.in.grains.owned; i += every) {
     const Vec4 v = start_velocity(s, i);
-    const bool moved_by_others = s.bodies[i][3] == 0 && dot(v, v) > 0;
-    if (!moved_by_others) samples_.push_back({s.grains.tag[i], i, place(s.grains, i)});
+    const bool moved_by_others = s.motion.bodies[i][3] == 0 && dot(v, v) > 0;
+    if (!moved_by_others) samples_.push_back({s.in.grains.tag[i], i, place(s.in.grains, i)});
   }
 }
 

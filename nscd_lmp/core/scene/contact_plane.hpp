@@ -43,7 +43,7 @@ NSCD_INLINE double impact_kick(const State &s, std::size_t k)
 
 inline Vec4 separation_at_start(const State &s, const ContactInfo &info)
 {
-  return s.spheres[info.atom_i].centre - s.spheres[info.atom_j].centre;
+  return s.atoms.spheres[info.atom_i].centre - s.atoms.spheres[info.atom_j].centre;
 }
 
 // Contact k, a pair without impulse, takes its plane where the two are `there` apart.

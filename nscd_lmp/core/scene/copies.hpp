@@ -6,8 +6,8 @@
 
 namespace nscd {
 
-// With a new list, after state.owner is known for images of owned grains: gives the grains of other ranks their bodies
-// (state.owner, state.copies.count). Collective, as all below.
+// With a new list, after atoms.owner is known for images of owned grains: gives the grains of other ranks their bodies
+// (state.atoms.owner, state.motion.copies.count). Collective, as all below.
 void plan_copies(State &state);
 
 // At the start of a step: how they move.

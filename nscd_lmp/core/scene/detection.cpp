@@ -27,19 +27,19 @@ struct Foresight {
   }
 };
 
-// All listed pairs that are near enough to watch, into s.found. Most are not, and a branch on that would be
+// All listed pairs that are near enough to watch, into s.search.found. Most are not, and a branch on that would be
 // mispredicted, so every pair is stored and the counter moves on or not.
 NSCD_HOT void filter_pairs(State &s, const PairList &pairs)
 {
-  const Sphere *const spheres = s.spheres.data();
+  const Sphere *const spheres = s.atoms.spheres.data();
   std::size_t kept = 0;
   for (int entry = 0; entry < pairs.count; ++entry) {
     const int i = pairs.atom[entry], count = pairs.neighbors[entry];
     const int *const neighbors = pairs.first[entry];
     const Vec4 centre = spheres[i].centre;
-    const double watch = spheres[i].radius + s.watch;
-    if (s.found.size() < kept + count) s.found.resize(2 * (kept + count));
-    Candidate *const found = s.found.data();
+    const double watch = spheres[i].radius + s.search.watch;
+    if (s.search.found.size() < kept + count) s.search.found.resize(2 * (kept + count));
+    Candidate *const found = s.search.found.data();
     for (int k = 0; k < count; ++k) {
       const int j = neighbors[k] & neighbor_index_mask;
       const Vec4 separation = centre - spheres[j].centre;
@@ -48,7 +48,7 @@ NSCD_HOT void filter_pairs(State &s, const PairList &pairs)
       kept += dot(separation, separation) <= watched * watched;
     }
   }
-  s.found_count = kept;
+  s.search.found_count = kept;
 }
 
 NSCD_INLINE double gap_of(const Sphere &a, const Sphere &b)
@@ -61,24 +61,26 @@ NSCD_INLINE double gap_of(const Sphere &a, const Sphere &b)
 bool overlaps_own_image(const State &s, const Candidate &c)
 {
   constexpr double touches = 1e-9;
-  const Sphere &grain = s.spheres[c.atom_i];
-  return s.owner[c.atom_i] == s.owner[c.atom_j] && s.bodies[s.owner[c.atom_i]][3] > 0 &&
-      gap_of(grain, s.spheres[c.atom_j]) < -touches * grain.radius;
+  const Sphere &grain = s.atoms.spheres[c.atom_i];
+  return s.atoms.owner[c.atom_i] == s.atoms.owner[c.atom_j] && s.motion.bodies[s.atoms.owner[c.atom_i]][3] > 0 &&
+      gap_of(grain, s.atoms.spheres[c.atom_j]) < -touches * grain.radius;
 }
 
 [[noreturn]] void refuse_narrow_box(const State &s, const Candidate &c)
 {
-  const Sphere &grain = s.spheres[c.atom_i];
-  fail("grain ", s.grains.tag[c.atom_i], " overlaps its own periodic image by ", -gap_of(grain, s.spheres[c.atom_j]),
-       ": the box must be wider than the grain's diameter ", 2 * grain.radius);
+  const Sphere &grain = s.atoms.spheres[c.atom_i];
+  fail("grain ", s.in.grains.tag[c.atom_i], " overlaps its own periodic image by ",
+       -gap_of(grain, s.atoms.spheres[c.atom_j]), ": the box must be wider than the grain's diameter ",
+       2 * grain.radius);
 }
 
 // Not a contact: a grain and its own image, two obstacles, or a pair that the list has a second time.
 bool is_void(const State &s, const Candidate &c, const PairList &pairs)
 {
-  const int i = s.owner[c.atom_i], j = s.owner[c.atom_j];
-  if (i == j || s.bodies[i][3] + s.bodies[j][3] == 0) return true;
-  return pairs.cross_pairs_twice && c.atom_j >= s.grains.owned && s.grains.tag[c.atom_i] > s.grains.tag[c.atom_j];
+  const int i = s.atoms.owner[c.atom_i], j = s.atoms.owner[c.atom_j];
+  if (i == j || s.motion.bodies[i][3] + s.motion.bodies[j][3] == 0) return true;
+  const Grains &g = s.in.grains;
+  return pairs.cross_pairs_twice && c.atom_j >= g.owned && g.tag[c.atom_i] > g.tag[c.atom_j];
 }
 
 // So that near[count] may be written; most scenes watch few pairs, and those that watch many come to hold them once.
@@ -92,74 +94,74 @@ NSCD_INLINE void make_room(std::vector<Watched> &near, std::size_t count)
 NSCD_HOT std::optional<Candidate> sort_pairs(State &s, const PairList &pairs)
 {
   std::optional<Candidate> narrow;
-  s.touching.resize(s.found_count);
+  s.search.touching.resize(s.search.found_count);
   std::size_t touching = 0, near = 0;
-  for (std::size_t k = 0; k < s.found_count; ++k) {
-    const Candidate c = s.found[k];
+  for (std::size_t k = 0; k < s.search.found_count; ++k) {
+    const Candidate c = s.search.found[k];
     if (is_void(s, c, pairs)) {
       if (!narrow && overlaps_own_image(s, c)) narrow = c;
       continue;
     }
-    const Sphere &a = s.spheres[c.atom_i], &b = s.spheres[c.atom_j];
+    const Sphere &a = s.atoms.spheres[c.atom_i], &b = s.atoms.spheres[c.atom_j];
     const double gap = gap_of(a, b);
     const bool reaches = !(gap > a.reach + b.reach);   // not-a-number does, and is refused
-    make_room(s.near, near);
-    s.touching[touching] = c;
-    s.near[near] = {c, gap};
+    make_room(s.search.near, near);
+    s.search.touching[touching] = c;
+    s.search.near[near] = {c, gap};
     touching += reaches;
     near += !reaches;
   }
-  make_room(s.near, near);
-  s.touching.resize(touching);
-  s.near.resize(near);
+  make_room(s.search.near, near);
+  s.search.touching.resize(touching);
+  s.search.near.resize(near);
   return narrow;
 }
 
 // Those of the contacts-to-be that are not foreseen are watched instead.
 NSCD_HOT void watch_unforeseen(State &s)
 {
-  const Foresight foresight{s.dt};
-  const std::size_t watched = s.near.size(), count = s.touching.size();
+  const Foresight foresight{s.in.dt};
+  const std::size_t watched = s.search.near.size(), count = s.search.touching.size();
   const bool drifts = !s.drift.of.empty();
   std::size_t kept = 0, doubted = watched;
   for (std::size_t k = 0; k < count; ++k) {
-    const Candidate c = s.touching[k];
-    const Sphere &a = s.spheres[c.atom_i], &b = s.spheres[c.atom_j];
+    const Candidate c = s.search.touching[k];
+    const Sphere &a = s.atoms.spheres[c.atom_i], &b = s.atoms.spheres[c.atom_j];
     const Vec4 separation = a.centre - b.centre;
     const double distance = std::sqrt(dot(separation, separation)), gap = distance - a.radius - b.radius;
-    const int i = s.owner[c.atom_i], j = s.owner[c.atom_j];
-    Vec4 parting = s.bodies[i] - s.bodies[j];
+    const int i = s.atoms.owner[c.atom_i], j = s.atoms.owner[c.atom_j];
+    Vec4 parting = s.motion.bodies[i] - s.motion.bodies[j];
     if (drifts) parting += drift_of(s, c, separation / distance);
     const double rate = dot(separation, parting) / distance;
-    const bool meets = foresight.meets(gap, a.reach + b.reach, rate, std::max(s.kicks[i], s.kicks[j]));
-    make_room(s.near, doubted);
-    s.touching[kept] = c;
-    s.near[doubted] = {c, gap};
+    const bool meets = foresight.meets(gap, a.reach + b.reach, rate, std::max(s.motion.kicks[i], s.motion.kicks[j]));
+    make_room(s.search.near, doubted);
+    s.search.touching[kept] = c;
+    s.search.near[doubted] = {c, gap};
     kept += meets;
     doubted += !meets;
   }
-  make_room(s.near, doubted);
-  s.touching.resize(kept);
-  s.near.resize(doubted);
-  s.unforeseen = doubted - watched;
+  make_room(s.search.near, doubted);
+  s.search.touching.resize(kept);
+  s.search.near.resize(doubted);
+  s.search.unforeseen = doubted - watched;
 }
 
 // How far the box carries a grain, which it does not carry away from others, m.
 double carried_to_wall(const State &s, int i)
 {
-  return s.drift.of.empty() ? 0 : s.dt * length(without_fourth(s.drift.of[i]));
+  return s.drift.of.empty() ? 0 : s.in.dt * length(without_fourth(s.drift.of[i]));
 }
 
 void sort_wall(State &s, int wall)
 {
-  const Height height(s.settings.walls[wall]);
-  for (int i = 0; i < s.grains.owned; ++i) {
-    const double gap = height.of(s.spheres[i].centre) - s.spheres[i].radius;
+  const Height height(s.in.settings.walls[wall]);
+  for (int i = 0; i < s.in.grains.owned; ++i) {
+    const double gap = height.of(s.atoms.spheres[i].centre) - s.atoms.spheres[i].radius;
     const double carried = carried_to_wall(s, i);
-    if (gap > s.watch + carried || s.bodies[i][3] == 0) continue;
+    if (gap > s.search.watch + carried || s.motion.bodies[i][3] == 0) continue;
     const Candidate found{i, -1 - wall};
-    if (gap > s.spheres[i].reach + carried) s.near.push_back({found, gap});
-    else s.touching.push_back(found);
+    if (gap > s.atoms.spheres[i].reach + carried) s.search.near.push_back({found, gap});
+    else s.search.touching.push_back(found);
   }
 }
 
@@ -176,7 +178,7 @@ NSCD_HOT std::size_t place_range(State &s, const Range &range)
   std::size_t k = range.first;
   for (std::size_t place = range.first; place < range.first + length; ++place)
     for (std::size_t listed = place; listed < range.last; listed += length, ++k)
-      if (!place_contact(s, k, s.touching[listed])) unfit = std::min(unfit, k);
+      if (!place_contact(s, k, s.search.touching[listed])) unfit = std::min(unfit, k);
   return unfit;
 }
 
@@ -188,38 +190,39 @@ void place_all_of(State &s, const Range &range)
 
 void place_contacts(State &s)
 {
-  const std::size_t n = s.touching.size();
+  const std::size_t n = s.search.touching.size();
   s.table.resize(n);
-  if (s.slabs.count() == 1) return place_all_of(s, {0, n});
-  s.slabs.divide(s);
-  s.slabs.order_candidates(s);
-  for (int part = 0; part < s.slabs.parts().count(); ++part) place_all_of(s, s.slabs.parts().range(part));
+  if (s.exec.slabs.count() == 1) return place_all_of(s, {0, n});
+  s.exec.slabs.divide(s);
+  s.exec.slabs.order_candidates(s);
+  for (int part = 0; part < s.exec.slabs.parts().count(); ++part) place_all_of(s, s.exec.slabs.parts().range(part));
 }
 
 // How far grains get at most, be it by displacement or by dt v_{k+1}.
 void measure_moves(State &s)
 {
-  s.moved.assign(s.bodies.size(), 0);
+  s.search.moved.assign(s.motion.bodies.size(), 0);
   for (int i = 0; i < s.moving(); ++i) {
-    const Body &b = s.bodies[i];
+    const Body &b = s.motion.bodies[i];
     const double speed2 = b[0] * b[0] + b[1] * b[1] + b[2] * b[2];
-    s.moved[i] = std::sqrt(std::max(dot(s.displacement[i], s.displacement[i]), s.dt * s.dt * speed2));
+    const Vec4 &displacement = s.motion.displacement[i];
+    s.search.moved[i] = std::sqrt(std::max(dot(displacement, displacement), s.in.dt * s.in.dt * speed2));
   }
 }
 
 // Whether the moves are long enough: next to nothing to ask, and nearly always no.
 NSCD_INLINE bool may_meet(const State &s, const Watched &near)
 {
-  const double other = is_wall(near.pair) ? 0 : s.moved[s.owner[near.pair.atom_j]];
+  const double other = is_wall(near.pair) ? 0 : s.search.moved[s.atoms.owner[near.pair.atom_j]];
   const double carried = is_wall(near.pair) ? carried_to_wall(s, near.pair.atom_i) : 0;
-  return near.gap <= 1.0000001 * (s.moved[s.owner[near.pair.atom_i]] + other + s.drift.approach + carried);
+  return near.gap <= 1.0000001 * (s.search.moved[s.atoms.owner[near.pair.atom_i]] + other + s.drift.approach + carried);
 }
 
 // Of the two that move farthest, m.
 double sum_of_longest_moves(const State &s)
 {
   double longest = 0, second = 0;
-  for (const double moved : s.moved) {
+  for (const double moved : s.search.moved) {
     second = std::max(second, std::min(moved, longest));
     longest = std::max(longest, moved);
   }
@@ -230,41 +233,42 @@ double sum_of_longest_moves(const State &s)
 void watch_pairs_beyond(State &s, const PairList &pairs, double watched)
 {
   const auto is_within = [&s](int i, int j, double watch) {
-    const Vec4 separation = s.spheres[i].centre - s.spheres[j].centre;
-    const double distance = s.spheres[i].radius + watch + s.spheres[j].radius;
+    const Vec4 separation = s.atoms.spheres[i].centre - s.atoms.spheres[j].centre;
+    const double distance = s.atoms.spheres[i].radius + watch + s.atoms.spheres[j].radius;
     return dot(separation, separation) <= distance * distance;
   };
   for (int entry = 0; entry < pairs.count; ++entry)
     for (int k = 0; k < pairs.neighbors[entry]; ++k) {
       const Candidate c{pairs.atom[entry], pairs.first[entry][k] & neighbor_index_mask};
-      if (!is_within(c.atom_i, c.atom_j, s.watch) || is_within(c.atom_i, c.atom_j, watched)) continue;
+      if (!is_within(c.atom_i, c.atom_j, s.search.watch) || is_within(c.atom_i, c.atom_j, watched)) continue;
       if (overlaps_own_image(s, c)) refuse_narrow_box(s, c);
-      if (!is_void(s, c, pairs)) s.near.push_back({c, gap_of(s.spheres[c.atom_i], s.spheres[c.atom_j])});
+      if (is_void(s, c, pairs)) continue;
+      s.search.near.push_back({c, gap_of(s.atoms.spheres[c.atom_i], s.atoms.spheres[c.atom_j])});
     }
 }
 
 void watch_wall_beyond(State &s, int wall, double watched)
 {
-  const Height height(s.settings.walls[wall]);
-  for (int i = 0; i < s.grains.owned; ++i) {
-    const double gap = height.of(s.spheres[i].centre) - s.spheres[i].radius;
+  const Height height(s.in.settings.walls[wall]);
+  for (int i = 0; i < s.in.grains.owned; ++i) {
+    const double gap = height.of(s.atoms.spheres[i].centre) - s.atoms.spheres[i].radius;
     const double carried = carried_to_wall(s, i);
-    const bool is_beyond = gap > watched + carried && gap <= s.watch + carried;
-    if (is_beyond && s.bodies[i][3] > 0) s.near.push_back({{i, -1 - wall}, gap});
+    const bool is_beyond = gap > watched + carried && gap <= s.search.watch + carried;
+    if (is_beyond && s.motion.bodies[i][3] > 0) s.search.near.push_back({{i, -1 - wall}, gap});
   }
 }
 
 double smaller_radius(const State &s, const Candidate &c)
 {
-  const double radius = s.spheres[c.atom_i].radius;
-  return is_wall(c) ? radius : std::min(radius, s.spheres[c.atom_j].radius);
+  const double radius = s.atoms.spheres[c.atom_i].radius;
+  return is_wall(c) ? radius : std::min(radius, s.atoms.spheres[c.atom_j].radius);
 }
 
 // What a solved step would leave of an overlap of the pair if it was a contact, m.
 double left_of_contact(const State &s, const Candidate &c)
 {
-  double kick = s.kicks[s.owner[c.atom_i]];
-  if (!is_wall(c)) kick = std::max(kick, s.kicks[s.owner[c.atom_j]]);
+  double kick = s.motion.kicks[s.atoms.owner[c.atom_i]];
+  if (!is_wall(c)) kick = std::max(kick, s.motion.kicks[s.atoms.owner[c.atom_j]]);
   return left_of_overlap(s, kick, smaller_radius(s, c));
 }
 
@@ -272,22 +276,23 @@ double left_of_contact(const State &s, const Candidate &c)
 double gap_constrained(const State &s, const Watched &near)
 {
   const auto [i, j] = near.pair;
-  const Body of_i = s.bodies[s.owner[i]];
+  const Body of_i = s.motion.bodies[s.atoms.owner[i]];
   if (is_wall(near.pair)) {
-    const Vec4 normal = Height(s.settings.walls[wall_index(near.pair)]).normal;
-    return near.gap + dot(normal, course_start(s, s.owner[i]) + s.dt * (of_i + drift_of(s, near.pair, normal)));
+    const Vec4 normal = Height(s.in.settings.walls[wall_index(near.pair)]).normal;
+    const Vec4 way = course_start(s, s.atoms.owner[i]) + s.in.dt * (of_i + drift_of(s, near.pair, normal));
+    return near.gap + dot(normal, way);
   }
-  const Vec4 separation = s.spheres[i].centre - s.spheres[j].centre;
+  const Vec4 separation = s.atoms.spheres[i].centre - s.atoms.spheres[j].centre;
   const double distance = std::sqrt(dot(separation, separation));
-  const Vec4 parting = of_i - s.bodies[s.owner[j]] + drift_of(s, near.pair, separation / distance);
-  const Vec4 starts = course_start(s, s.owner[i]) - course_start(s, s.owner[j]);
-  return near.gap + dot(separation, starts + s.dt * parting) / distance;
+  const Vec4 parting = of_i - s.motion.bodies[s.atoms.owner[j]] + drift_of(s, near.pair, separation / distance);
+  const Vec4 starts = course_start(s, s.atoms.owner[i]) - course_start(s, s.atoms.owner[j]);
+  return near.gap + dot(separation, starts + s.in.dt * parting) / distance;
 }
 
 NSCD_INLINE void note_overlap(State &s, const Candidate &c, double overlap)
 {
   if (overlap <= 0) return;
-  Overlap &largest = s.watched_overlap;
+  Overlap &largest = s.search.watched_overlap;
   largest.length = std::max(largest.length, overlap);
   largest.ratio = std::max(largest.ratio, overlap / smaller_radius(s, c));
 }
@@ -298,9 +303,9 @@ void detect(State &state, const PairList &pairs, Sought sought)
 {
   filter_pairs(state, pairs);
   if (const auto narrow = sort_pairs(state, pairs)) refuse_narrow_box(state, *narrow);
-  state.unforeseen = 0;
+  state.search.unforeseen = 0;
   if (sought == Sought::foreseen) watch_unforeseen(state);
-  for (int wall = 0; wall < int(state.settings.walls.size()); ++wall) sort_wall(state, wall);
+  for (int wall = 0; wall < int(state.in.settings.walls.size()); ++wall) sort_wall(state, wall);
   place_contacts(state);
 }
 
@@ -308,19 +313,19 @@ void watch_farther(State &state, const PairList &pairs)
 {
   measure_moves(state);
   const double longest = sum_of_longest_moves(state);
-  if (longest <= state.watch) return;
-  const double watched = state.watch;
-  state.watch = 1.5 * longest;
+  if (longest <= state.search.watch) return;
+  const double watched = state.search.watch;
+  state.search.watch = 1.5 * longest;
   watch_pairs_beyond(state, pairs, watched);
-  for (int wall = 0; wall < int(state.settings.walls.size()); ++wall) watch_wall_beyond(state, wall, watched);
+  for (int wall = 0; wall < int(state.in.settings.walls.size()); ++wall) watch_wall_beyond(state, wall, watched);
 }
 
 std::size_t promote_near(State &state)
 {
   const std::size_t before = state.table.contacts.size();
-  state.watched_overlap = {};
+  state.search.watched_overlap = {};
   std::size_t kept = 0;
-  for (const Watched near : state.near) {
+  for (const Watched near : state.search.near) {
     if (may_meet(state, near)) {
       const double displaced = gap_at(state, near.pair, at_end);
       if (std::min(displaced, gap_constrained(state, near)) < -left_of_contact(state, near.pair)) {
@@ -331,16 +336,16 @@ std::size_t promote_near(State &state)
       }
       note_overlap(state, near.pair, -gap_at(state, near.pair, in_arrays));
     }
-    state.near[kept++] = near;
+    state.search.near[kept++] = near;
   }
-  state.near.resize(kept);
+  state.search.near.resize(kept);
   return state.table.contacts.size() - before;
 }
 
 void look_at_near(State &state)
 {
-  state.watched_overlap = {};
-  for (const Watched &near : state.near)
+  state.search.watched_overlap = {};
+  for (const Watched &near : state.search.near)
     if (may_meet(state, near)) note_overlap(state, near.pair, -gap_at(state, near.pair, in_arrays));
 }
 

@@ -12,8 +12,8 @@ namespace nscd {
 // An atom moved by its body and, for these times (s), by its drift.
 inline Sphere drifted(const State &s, int atom, double centre, double radius)
 {
-  Sphere sphere = s.spheres[atom];
-  sphere.centre += s.displacement[s.owner[atom]];
+  Sphere sphere = s.atoms.spheres[atom];
+  sphere.centre += s.motion.displacement[s.atoms.owner[atom]];
   if (s.drift.of.empty()) return sphere;
   sphere.centre += without_fourth(s.drift.of[atom]) * centre;
   sphere.radius += s.drift.of[atom][3] * radius;
@@ -31,7 +31,7 @@ inline Vec4 moved_in_arrays(const State &s, int i) { return drifted(s, i, -s.dri
 inline double gap_at(const State &s, const Candidate &c, Sphere (*where)(const State &, int))
 {
   const Sphere a = where(s, c.atom_i);
-  if (is_wall(c)) return Height(s.settings.walls[wall_index(c)]).of(a.centre) - a.radius;
+  if (is_wall(c)) return Height(s.in.settings.walls[wall_index(c)]).of(a.centre) - a.radius;
   const Sphere b = where(s, c.atom_j);
   const Vec4 separation = a.centre - b.centre;
   return std::sqrt(dot(separation, separation)) - a.radius - b.radius;

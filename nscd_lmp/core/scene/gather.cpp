@@ -22,7 +22,7 @@ struct Search {
 
 [[noreturn]] void refuse(const State &s, int i)
 {
-  const Grains &g = s.grains;
+  const Grains &g = s.in.grains;
   if (!(g.radius[i] > 0 && std::isfinite(g.radius[i])))
     fail("grain ", g.tag[i], " has radius ", g.radius[i], ": nscd needs spheres of finite radius > 0");
   if (g.moves(i) && !(g.mass[i] > 0 && std::isfinite(g.mass[i])))
@@ -34,23 +34,23 @@ struct Search {
 // step; they are taken back by dt v. Belts stay where they are.
 NSCD_INLINE void load_body(State &s, int i, const Search &search, Largest &largest)
 {
-  const Grains &g = s.grains;
+  const Grains &g = s.in.grains;
   const double *x = g.x + 3 * std::size_t(i), *v = g.v + 3 * std::size_t(i), *f = g.f + 3 * std::size_t(i);
   const bool moves = g.moves(i);
   const double inverse_mass = moves ? 1 / g.mass[i] : 0;
   const Vec4 before = moves ? Vec4{v[0], v[1], v[2], 0} : start_velocity(s, i);
-  const Vec4 kick = Vec4{f[0], f[1], f[2], 0} * (s.dt * g.force_to_acceleration * inverse_mass);
+  const Vec4 kick = Vec4{f[0], f[1], f[2], 0} * (s.in.dt * g.force_to_acceleration * inverse_mass);
   const Vec4 free = before + kick;
-  const bool has_moved = !moves && way(s, i) == Way::has_moved;
-  const Vec4 centre = Vec4{x[0], x[1], x[2], 0} + before * (s.dt * (search.prediction - has_moved));
+  const bool has_moved = !moves && way(s.motion, i) == Way::has_moved;
+  const Vec4 centre = Vec4{x[0], x[1], x[2], 0} + before * (s.in.dt * (search.prediction - has_moved));
   const double before2 = dot(before, before), free2 = dot(free, free), speed2 = std::max(before2, free2);
   const double kick2 = dot(kick, kick);
-  s.kicks[i] = std::sqrt(kick2);
+  s.motion.kicks[i] = std::sqrt(kick2);
   largest.kick2 = std::max(largest.kick2, kick2);
   largest.speed2 = std::max(largest.speed2, speed2);
   largest.smallest_radius = std::min(largest.smallest_radius, g.radius[i]);
-  s.spheres[i] = {centre, g.radius[i], s.dt * search.look_ahead * std::sqrt(speed2)};
-  s.bodies[i] = free + Vec4{0, 0, 0, inverse_mass};
+  s.atoms.spheres[i] = {centre, g.radius[i], s.in.dt * search.look_ahead * std::sqrt(speed2)};
+  s.motion.bodies[i] = free + Vec4{0, 0, 0, inverse_mass};
   // One test for all that is wrong: a not-a-number fails every comparison.
   const bool fit = dot(centre, centre) + before2 + free2 < INFINITY && g.radius[i] > 0 && g.radius[i] < INFINITY &&
       inverse_mass >= 0 && inverse_mass < INFINITY && (inverse_mass > 0) == moves;
@@ -60,22 +60,23 @@ NSCD_INLINE void load_body(State &s, int i, const Search &search, Largest &large
 // Images take their grain's velocity, so ghosts need none of their own.
 void place_images(State &s, const Search &search)
 {
-  const Grains &g = s.grains;
+  const Grains &g = s.in.grains;
   const auto of = [&g](int j, int groups) { return groups != 0 && (g.mask[j] & groups) != 0; };
   for (int j = g.owned; j < g.owned + g.ghosts; ++j) {
-    const int i = s.owner[j];
+    const int i = s.atoms.owner[j];
     const double *xj = g.x + 3 * std::size_t(j);
     const Vec4 image{xj[0], xj[1], xj[2], 0};
     if (i < g.owned && !of(j, g.earlier)) {
       const double *xi = g.x + 3 * std::size_t(i);
-      s.spheres[j] = {s.spheres[i].centre + (image - Vec4{xi[0], xi[1], xi[2], 0}), g.radius[i], s.spheres[i].reach};
+      const Sphere &own = s.atoms.spheres[i];
+      s.atoms.spheres[j] = {own.centre + (image - Vec4{xi[0], xi[1], xi[2], 0}), g.radius[i], own.reach};
       continue;
     }
     const Vec4 before = start_velocity(s, i), free = before + smooth_kick(s, i);
     const double speed2 = std::max(dot(before, before), dot(free, free));
-    const bool has_moved = s.bodies[i][3] == 0 && way(s, i) == Way::has_moved && !of(j, g.earlier);
-    s.spheres[j] = {image + before * (s.dt * (search.prediction - has_moved)), g.radius[j],
-                    s.dt * search.look_ahead * std::sqrt(speed2)};
+    const bool has_moved = s.motion.bodies[i][3] == 0 && way(s.motion, i) == Way::has_moved && !of(j, g.earlier);
+    s.atoms.spheres[j] = {image + before * (s.in.dt * (search.prediction - has_moved)), g.radius[j],
+                    s.in.dt * search.look_ahead * std::sqrt(speed2)};
   }
 }
 
@@ -104,29 +105,30 @@ bool has_unread_torque(const Grains &g)
 static NSCD_HOT Largest load_bodies(State &s, const Search &search)
 {
   Largest largest;
-  for (int i = 0; i < s.grains.owned; ++i) load_body(s, i, search, largest);
+  for (int i = 0; i < s.in.grains.owned; ++i) load_body(s, i, search, largest);
   return largest;
 }
 
 Largest gather_owned(State &s, double prediction, double look_ahead)
 {
-  s.spheres.resize(s.grains.owned + s.grains.ghosts);
-  s.bodies.resize(s.moving() + obstacle_copies * s.slabs.count());
-  s.kicks.resize(s.bodies.size());
-  s.displacement.resize(s.moving());
+  s.atoms.spheres.resize(s.in.grains.owned + s.in.grains.ghosts);
+  s.motion.bodies.resize(s.moving() + obstacle_copies * s.exec.slabs.count());
+  s.motion.kicks.resize(s.motion.bodies.size());
+  s.motion.displacement.resize(s.moving());
   const Largest largest = load_bodies(s, {prediction, look_ahead});
   if (largest.unfit >= 0) refuse(s, largest.unfit);
-  std::fill(s.bodies.begin() + s.grains.owned, s.bodies.end(), Body{});
-  std::fill(s.kicks.begin() + s.grains.owned, s.kicks.end(), 0.0);
+  std::fill(s.motion.bodies.begin() + s.in.grains.owned, s.motion.bodies.end(), Body{});
+  std::fill(s.motion.kicks.begin() + s.in.grains.owned, s.motion.kicks.end(), 0.0);
   if (s.friction.model != Model::frictionless) gather_spins(s);
   return largest;
 }
 
 void gather_images(State &s, double prediction, double look_ahead, const Largest &largest)
 {
-  s.smooth_kick = std::sqrt(largest.kick2);
-  s.watch = (look_ahead > 0 ? watched_moves : seen_moves) * s.dt * std::sqrt(largest.speed2);
-  for (int c = 0; c < s.copies.count; ++c) s.kicks[s.grains.owned + c] = length(s.copies.kick[c]);
+  s.scales.smooth_kick = std::sqrt(largest.kick2);
+  s.search.watch = (look_ahead > 0 ? watched_moves : seen_moves) * s.in.dt * std::sqrt(largest.speed2);
+  const Copies &copies = s.motion.copies;
+  for (int c = 0; c < copies.count; ++c) s.motion.kicks[s.in.grains.owned + c] = length(copies.kick[c]);
   place_images(s, {prediction, look_ahead});
 }
 

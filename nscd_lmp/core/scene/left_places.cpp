@@ -18,28 +18,28 @@ constexpr double rounded = 1e-9, wrapped = 1;
 
 void LeftPlaces::remember(const State &s)
 {
-  tags_.assign(s.grains.tag, s.grains.tag + s.grains.owned);
+  tags_.assign(s.in.grains.tag, s.in.grains.tag + s.in.grains.owned);
 }
 
 // How far the grain that was atom `before` and is atom `now` is from where the last step left it, in its radii.
 double LeftPlaces::moved(const State &s, std::size_t before, int now) const
 {
-  if (s.bodies[before][3] == 0 || !s.grains.moves(now)) return 0;
+  if (s.motion.bodies[before][3] == 0 || !s.in.grains.moves(now)) return 0;
   const Vec4 left = moved_in_arrays(s, int(before));
-  const double *x = s.grains.x + 3 * std::size_t(now);
+  const double *x = s.in.grains.x + 3 * std::size_t(now);
   const double far = std::max({std::abs(x[0] - left[0]), std::abs(x[1] - left[1]), std::abs(x[2] - left[2])});
-  return far / s.grains.radius[now];
+  return far / s.in.grains.radius[now];
 }
 
 void LeftPlaces::require(const State &s, bool list_is_new)
 {
-  const bool in_order = !list_is_new && int(tags_.size()) == s.grains.owned;
+  const bool in_order = !list_is_new && int(tags_.size()) == s.in.grains.owned;
   const bool look = !tags_.empty() && (in_order || was_new_);
   was_new_ = list_is_new;
   if (!look) return;
   std::vector<std::pair<std::int32_t, int>> now;
   if (!in_order) {
-    for (int i = 0; i < s.grains.owned; ++i) now.push_back({s.grains.tag[i], i});
+    for (int i = 0; i < s.in.grains.owned; ++i) now.push_back({s.in.grains.tag[i], i});
     std::sort(now.begin(), now.end());
   }
   for (std::size_t k = 0; k < tags_.size(); ++k) {

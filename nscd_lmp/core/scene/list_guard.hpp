@@ -12,7 +12,7 @@ class ListGuard {
  public:
   // The list may have been rebuilt since the last step although it does not say so.
   void expect_new_list() { unknown_ = true; }
-  // Before each step: if the list is new, remembers where atoms were and finds the owners of images (state.owner).
+  // Before each step: if the list is new, remembers where atoms were and finds the owners of images (atoms.owner).
   // Raises Error for a list that holds pairs twice, or an image without a grain.
   void inspect(State &state, const PairList &pairs);
   // How far a grain of this rank has moved since the list was built, m, at most.

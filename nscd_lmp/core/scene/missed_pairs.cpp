@@ -41,8 +41,8 @@ Bounds MissedPairs::displacements(const State &s, int atom) const
 {
   Bounds box = since_listed(atom);
   const Vec4 since = box.lo;
-  box.include(since + motion_.one[s.owner[atom]]);
-  box.include(since + motion_.other[s.owner[atom]]);
+  box.include(since + motion_.one[s.atoms.owner[atom]]);
+  box.include(since + motion_.other[s.atoms.owner[atom]]);
   return box;
 }
 
@@ -51,17 +51,17 @@ double MissedPairs::spread(const State &s)
 {
   since_ = moving_ = all_ = {};
   double largest = 0;
-  for (int a = 0; a < int(s.spheres.size()); ++a) {
+  for (int a = 0; a < int(s.atoms.spheres.size()); ++a) {
     const Bounds box = displacements(s, a);
     since_.include(since_listed(a));
     all_.include(box);
-    largest = std::max(largest, s.spheres[a].radius);
-    if (s.bodies[s.owner[a]][3] > 0) moving_.include(box);
+    largest = std::max(largest, s.atoms.spheres[a].radius);
+    if (s.motion.bodies[s.atoms.owner[a]][3] > 0) moving_.include(box);
   }
   Bounds boxes[] = {since_, moving_, all_};
-  unite(s.halo, boxes);
+  unite(s.exec.halo, boxes);
   since_ = boxes[0], moving_ = boxes[1], all_ = boxes[2];
-  largest_radius_ = s.halo ? s.halo->max(largest) : largest;
+  largest_radius_ = s.exec.halo ? s.exec.halo->max(largest) : largest;
   return moving_.farthest(all_);
 }
 
@@ -69,7 +69,7 @@ double MissedPairs::spread(const State &s)
 double MissedPairs::spread_by_layers(const State &s, double spread)
 {
   if (!has_profile()) return spread;
-  profile_.gather(s.halo, s.grains.owned, range_.images.periodic, [this](int i) { return list_.listed_at(i); },
+  profile_.gather(s.exec.halo, s.in.grains.owned, range_.images.periodic, [this](int i) { return list_.listed_at(i); },
                   [this, &s](int i) { return displacements(s, i); });
   return profile_.farthest(2 * largest_radius_ + spread);
 }
@@ -77,10 +77,10 @@ double MissedPairs::spread_by_layers(const State &s, double spread)
 // As the mean grain sees it, of all ranks.
 void MissedPairs::measure_paces(const State &s)
 {
-  double sums[4] = {0, 0, 0, double(s.grains.owned)};
-  for (int b = 0; b < s.grains.owned; ++b)
+  double sums[4] = {0, 0, 0, double(s.in.grains.owned)};
+  for (int b = 0; b < s.in.grains.owned; ++b)
     for (int d = 0; d < 3; ++d) sums[d] += motion_.one[b][d];
-  if (s.halo) s.halo->sum(sums);
+  if (s.exec.halo) s.exec.halo->sum(sums);
   frame_ = Vec4{sums[0], sums[1], sums[2], 0} * (1 / sums[3]);
   pace_.resize(s.moving());
   for (int b = 0; b < s.moving(); ++b) {
@@ -92,20 +92,20 @@ void MissedPairs::measure_paces(const State &s)
 // Each pair is one rank's, once: two owned grains, or one and the image of a slower one.
 bool MissedPairs::is_ours(const State &s, int i, int j) const
 {
-  if (i >= s.grains.owned) return false;
-  if (j < s.grains.owned) return true;
-  const double mine = pace_[s.owner[i]], its = pace_[s.owner[j]];
-  return std::abs(mine - its) > same_pace * (mine + its) ? mine > its : s.grains.tag[i] < s.grains.tag[j];
+  if (i >= s.in.grains.owned) return false;
+  if (j < s.in.grains.owned) return true;
+  const double mine = pace_[s.atoms.owner[i]], its = pace_[s.atoms.owner[j]];
+  return std::abs(mine - its) > same_pace * (mine + its) ? mine > its : s.in.grains.tag[i] < s.in.grains.tag[j];
 }
 
 void MissedPairs::examine(const State &s, int a, int b, double margin)
 {
-  const int i = std::min(a, b), j = std::max(a, b), of_i = s.owner[i], of_j = s.owner[j];
-  if (!is_ours(s, i, j) || of_i == of_j || s.bodies[of_i][3] + s.bodies[of_j][3] == 0) return;
+  const int i = std::min(a, b), j = std::max(a, b), of_i = s.atoms.owner[i], of_j = s.atoms.owner[j];
+  if (!is_ours(s, i, j) || of_i == of_j || s.motion.bodies[of_i][3] + s.motion.bodies[of_j][3] == 0) return;
   const Vec4 separation = motion_.from[i] - motion_.from[j], was = list_.listed_at(i) - list_.listed_at(j);
   const double distance = std::sqrt(dot(separation, separation)), listed = std::sqrt(dot(was, was));
   if (listed <= cutoff(i, j) * (1 - 1e-12)) return;
-  const double gap = distance - s.spheres[i].radius - s.spheres[j].radius;
+  const double gap = distance - s.atoms.spheres[i].radius - s.atoms.spheres[j].radius;
   const Vec4 one = motion_.one[of_i] - motion_.one[of_j], other = motion_.other[of_i] - motion_.other[of_j];
   const double approach = -std::min(dot(separation, one), dot(separation, other)) / distance;
   if (gap - approach > margin) return;   // grains in the same place meet
@@ -117,11 +117,11 @@ void MissedPairs::examine(const State &s, int a, int b, double margin)
 NSCD_HOT int MissedPairs::look_at_pairs(const State &s, double margin)
 {
   constexpr double cell_sizes = 4, most_for_each = 5000, most_at_least = 1e7;
-  const std::size_t n = s.spheres.size();
+  const std::size_t n = s.atoms.spheres.size();
   sized_.resize(n);
   double sum = 0;
   for (std::size_t a = 0; a < n; ++a) {
-    const double size = s.spheres[a].radius + 0.5 * margin + pace_[s.owner[a]];
+    const double size = s.atoms.spheres[a].radius + 0.5 * margin + pace_[s.atoms.owner[a]];
     sized_[a] = motion_.from[a] + Vec4{0, 0, 0, size};
     sum += size;
   }
@@ -147,23 +147,24 @@ void MissedPairs::search(const State &s, double margin)
 {
   const int a = look_at_pairs(s, margin);
   if (a >= 0)
-    fail("grain ", s.grains.tag[a], " moves by ", sized_[a][3] - s.spheres[a].radius, " in the step, many times the ",
+    fail("grain ", s.in.grains.tag[a], " moves by ", sized_[a][3] - s.atoms.spheres[a].radius,
+         " in the step, many times the ",
          "distance of its neighbors, and so do others: take a smaller timestep");
 }
 
 // Where slower grains were that the atom can meet, from where it was when the list was built.
 Bounds MissedPairs::partners(const State &s, int atom, double margin) const
 {
-  const double touch = s.spheres[atom].radius + largest_radius_ + margin;
+  const double touch = s.atoms.spheres[atom].radius + largest_radius_ + margin;
   const Bounds since = since_listed(atom);
   const auto against = [&](const Bounds &others) { return displacements(s, atom).less(others).wider(touch); };
-  const int body = s.owner[atom];
+  const int body = s.atoms.owner[atom];
   Bounds seen;   // in the frame, in which the others are within the pace
   for (const Vec4 &d : {Vec4{}, motion_.one[body] - frame_, motion_.other[body] - frame_}) seen.include(d);
   const Bounds earlier = since.less(since_);
   const double wider = touch + (1 + 4 * same_pace) * pace_[body];
   const Bounds by_pace = Bounds{seen.lo + earlier.lo, seen.hi + earlier.hi}.wider(wider);
-  const Bounds near = against(s.bodies[body][3] > 0 ? all_ : moving_).common(by_pace);
+  const Bounds near = against(s.motion.bodies[body][3] > 0 ? all_ : moving_).common(by_pace);
   if (all_known(atom, near) || !has_profile()) return near;
   return near.common(against(profile_.around(list_.listed_at(atom), near.farthest(Bounds{{}, {}}))));
 }
@@ -184,7 +185,7 @@ bool MissedPairs::all_known(int atom, const Bounds &partners) const
 std::optional<Beyond> MissedPairs::farthest_beyond(const State &s, double margin) const
 {
   std::optional<Beyond> found;
-  for (int i = 0; i < s.grains.owned; ++i) {
+  for (int i = 0; i < s.in.grains.owned; ++i) {
     const Bounds around = partners(s, i, margin);
     if (all_known(i, around)) continue;
     double distance = range_.images.boxed ? 0 : around.farthest(Bounds{{}, {}});
@@ -202,11 +203,11 @@ bool MissedPairs::find(const State &s, double margin)
   const double spread = this->spread(s);
   if (spread + margin <= listed_ || spread_by_layers(s, spread) + margin <= listed_) return false;
   measure_paces(s);
-  if (s.halo) s.halo->together([&] { search(s, margin); });
+  if (s.exec.halo) s.exec.halo->together([&] { search(s, margin); });
   else search(s, margin);
   beyond_ = farthest_beyond(s, margin);
   const double any = !missed_.empty() || beyond_;
-  return s.halo ? s.halo->max(any) > 0 : any > 0;
+  return s.exec.halo ? s.exec.halo->max(any) > 0 : any > 0;
 }
 
 }    // namespace nscd

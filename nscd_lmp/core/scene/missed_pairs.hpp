@@ -40,8 +40,8 @@ class MissedPairs {
 
   // The list of the step, which must outlive it; `listed`: surface distance up to which it has all pairs. Local.
   void begin(const PairList &pairs, double listed);
-  // Motion to be judged.
-  Motion &motion() { return motion_; }
+  // AtomMotion to be judged.
+  AtomMotion &motion() { return motion_; }
   // Finds what meets, or comes within `margin` (m) of that. Collective; returns whether there is any, anywhere.
   bool find(const State &state, double margin);
 
@@ -72,7 +72,7 @@ class MissedPairs {
   const ListGuard &list_;
   PairList range_;
   double listed_ = 0, largest_radius_ = 0;
-  Motion motion_;
+  AtomMotion motion_;
   Bounds since_;                     // of displacements since the list was built
   Bounds moving_, all_;              // with those of the motion, of moving grains and of all
   alignas(vec4_alignment) Vec4 frame_{};   // mean displacement of the motion, m

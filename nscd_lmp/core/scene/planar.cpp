@@ -6,7 +6,7 @@ namespace nscd {
 
 void require_planar(const State &s)
 {
-  const Grains &g = s.grains;
+  const Grains &g = s.in.grains;
   for (int i = 0; i < g.owned; ++i) {
     const std::size_t z = 3 * std::size_t(i) + 2;
     if (g.x[z] != g.x[2])

@@ -9,9 +9,9 @@ namespace nscd {
 // The longest side of the box round all pairs.
 static int longest_side(const State &s)
 {
-  Vec4 low = s.spheres[s.found[0].atom_i].centre, high = low;
-  for (std::size_t k = 1; k < s.found_count; ++k) {
-    const Vec4 &centre = s.spheres[s.found[k].atom_i].centre;
+  Vec4 low = s.atoms.spheres[s.search.found[0].atom_i].centre, high = low;
+  for (std::size_t k = 1; k < s.search.found_count; ++k) {
+    const Vec4 &centre = s.atoms.spheres[s.search.found[k].atom_i].centre;
     for (int d = 0; d < 3; ++d) {
       low[d] = std::min(low[d], centre[d]);
       high[d] = std::max(high[d], centre[d]);
@@ -29,23 +29,24 @@ void Slabs::divide(const State &s)
 {
   if (int(slab_.size()) == s.moving()) return;
   slab_.assign(s.moving(), 0);
-  if (s.found_count == 0) return;
+  if (s.search.found_count == 0) return;
   const int axis = longest_side(s);
-  places_.resize(s.found_count);
-  for (std::size_t k = 0; k < s.found_count; ++k) places_[k] = s.spheres[s.found[k].atom_i].centre[axis];
+  const std::size_t found = s.search.found_count;
+  places_.resize(found);
+  for (std::size_t k = 0; k < found; ++k) places_[k] = s.atoms.spheres[s.search.found[k].atom_i].centre[axis];
   std::vector<double> cuts;
   auto rest = places_.begin();
   for (int t = 0; t + 1 < threads_; ++t) {
-    const auto cut = places_.begin() + std::ptrdiff_t(s.found_count * std::size_t(t + 1) / std::size_t(threads_));
+    const auto cut = places_.begin() + std::ptrdiff_t(found * std::size_t(t + 1) / std::size_t(threads_));
     std::nth_element(rest, cut, places_.end());
     cuts.push_back(*cut);
     rest = cut;
   }
-  for (std::size_t atom = 0; atom < s.spheres.size(); ++atom) {
-    const bool own = int(atom) < s.grains.owned;
-    if (!own && s.owner[atom] < s.grains.owned) continue;   // an image of a grain that has its place
-    const double place = s.spheres[atom].centre[axis];
-    slab_[s.owner[atom]] = std::uint8_t(std::upper_bound(cuts.begin(), cuts.end(), place) - cuts.begin());
+  for (std::size_t atom = 0; atom < s.atoms.spheres.size(); ++atom) {
+    const bool own = int(atom) < s.in.grains.owned;
+    if (!own && s.atoms.owner[atom] < s.in.grains.owned) continue;   // an image of a grain that has its place
+    const double place = s.atoms.spheres[atom].centre[axis];
+    slab_[s.atoms.owner[atom]] = std::uint8_t(std::upper_bound(cuts.begin(), cuts.end(), place) - cuts.begin());
   }
 }
 
@@ -61,15 +62,16 @@ void Slabs::count_parts(std::size_t count, PartOf part_of)
 
 void Slabs::order_candidates(State &s)
 {
+  std::vector<Candidate> &touching = s.search.touching;
   const auto part_of = [&](std::size_t k) {
-    const Candidate &c = s.touching[k];
-    const int slab = of(s.owner[c.atom_i]);
-    return is_wall(c) ? slab : parts_.between(slab, of(s.owner[c.atom_j]));
+    const Candidate &c = touching[k];
+    const int slab = of(s.atoms.owner[c.atom_i]);
+    return is_wall(c) ? slab : parts_.between(slab, of(s.atoms.owner[c.atom_j]));
   };
-  count_parts(s.touching.size(), part_of);
-  s.ordered.resize(s.touching.size());
-  for (std::size_t k = 0; k < s.touching.size(); ++k) s.ordered[next_[part_of(k)]++] = s.touching[k];
-  s.touching.swap(s.ordered);
+  count_parts(touching.size(), part_of);
+  s.search.ordered.resize(touching.size());
+  for (std::size_t k = 0; k < touching.size(); ++k) s.search.ordered[next_[part_of(k)]++] = touching[k];
+  touching.swap(s.search.ordered);
 }
 
 int Slabs::part_of_contact(const State &s, std::size_t k) const

@@ -16,13 +16,13 @@ Model choose_model(const Settings &settings, int dimension)
 
 void place_slides(State &s, std::size_t first)
 {
-  const double pairs = s.settings.friction;
+  const double pairs = s.in.settings.friction;
   with_friction(s.friction.model, [&]<class M>(M) {
     auto &slides = s.table.slides<M>();
     for (std::size_t k = first; k < slides.size(); ++k) {
       const int j = s.table.infos[k].atom_j;
       slides[k] = typename M::Slide{};
-      slides[k].mu = j < 0 ? s.settings.wall_friction(wall_index({0, j})) : pairs;
+      slides[k].mu = j < 0 ? s.in.settings.wall_friction(wall_index({0, j})) : pairs;
     }
   });
 }
@@ -35,7 +35,7 @@ NSCD_HOT double keep_free_velocities_of(State &s, std::size_t first, std::size_t
   const auto &slides = s.table.slides<M>();
   double sum = 0;
   for (std::size_t k = first; k < last; ++k) {
-    const auto u = velocity<M>(s.table.contacts[k], s.bodies.data(), s.friction.spins.data());
+    const auto u = velocity<M>(s.table.contacts[k], s.motion.bodies.data(), s.motion.spins.data());
     const auto normal = u.n + s.table.contacts[k].bias;
     const auto slip = u.t + bias(slides[k]);
     sum += s.table.infos[k].free2 = normal * normal + inner(slip, slip);
@@ -47,7 +47,7 @@ NSCD_HOT double keep_free_normal_velocities(State &s, std::size_t first, std::si
 {
   double sum = 0;
   for (std::size_t k = first; k < last; ++k) {
-    const double v = normal_velocity(s.table.contacts[k], s.bodies.data()) + s.table.contacts[k].bias;
+    const double v = normal_velocity(s.table.contacts[k], s.motion.bodies.data()) + s.table.contacts[k].bias;
     sum += s.table.infos[k].free2 = v * v;
   }
   return sum;
@@ -59,7 +59,7 @@ NSCD_HOT double tangential_work_of(const State &s)
   const auto &slides = s.table.slides<M>();
   double sum = 0;
   for (std::size_t k = 0; k < slides.size(); ++k) {
-    const auto after = velocity<M>(s.table.contacts[k], s.bodies.data(), s.friction.spins.data()).t;
+    const auto after = velocity<M>(s.table.contacts[k], s.motion.bodies.data(), s.motion.spins.data()).t;
     sum += inner(slides[k].impulse, slip_at_start<M>(s, k) + after);
   }
   return sum;
@@ -114,11 +114,11 @@ void add_impulse(State &s, std::size_t k, double normal, const Vec4 &tangential)
 {
   Contact &c = s.table.contacts[k];
   c.impulse += normal;
-  apply_impulse(c, normal, s.bodies.data());
+  apply_impulse(c, normal, s.motion.bodies.data());
   with_friction(s.friction.model, [&]<class M>(M) {
     const auto dp = M::from_space(c.normal, tangential);
     s.table.slides<M>()[k].impulse += dp;
-    apply_tangential<M>(c, dp, s.friction.spin_response, s.bodies.data(), s.friction.spins.data());
+    apply_tangential<M>(c, dp, s.friction.spin_response, s.motion.bodies.data(), s.motion.spins.data());
   });
 }
 
@@ -151,8 +151,9 @@ void write_impulse(State &s, std::size_t k, const double *components)
 
 Sliding sliding(State &s, double e_t)
 {
-  Friction &f = s.friction;
-  return {f.model, f.spin_response, e_t, f.spins.data(), s.table.planar.data(), s.table.spatial.data()};
+  const Friction &f = s.friction;
+  ContactTable &table = s.table;
+  return {f.model, f.spin_response, e_t, s.motion.spins.data(), table.planar.data(), table.spatial.data()};
 }
 
 }    // namespace nscd

@@ -13,9 +13,9 @@ namespace {
 
 constexpr double parts_of_step = 100;
 
-char parts(const State &s, double moment) { return char(parts_of_step * moment / s.dt); }
+char parts(const State &s, double moment) { return char(parts_of_step * moment / s.in.dt); }
 
-bool is_grain(const State &s, int body) { return s.bodies[body][3] > 0; }
+bool is_grain(const State &s, int body) { return s.motion.bodies[body][3] > 0; }
 
 // How a pair lies and moves behind the impacts so far.
 struct Pair {
@@ -28,7 +28,7 @@ Pair pair_now(const State &s, std::size_t k)
   const Contact &c = s.table.contacts[k];
   const ContactInfo &info = s.table.infos[k];
   return {separation_at_start(s, info) + s.courses.start[c.i] - s.courses.start[c.j],
-          without_fourth(s.bodies[c.i] - s.bodies[c.j]) + carried_apart(s, {info.atom_i, info.atom_j})};
+          without_fourth(s.motion.bodies[c.i] - s.motion.bodies[c.j]) + carried_apart(s, {info.atom_i, info.atom_j})};
 }
 
 // As take_plane(), with what impacts have given along it.
@@ -49,7 +49,7 @@ bool is_straight(const State &s, const Contact &c)
 // How far the plane of contact k is at the end of the step, m; an overlap that it had is none.
 double plane_at_end(const State &s, std::size_t k, double u)
 {
-  return plane_gap(s, k) - std::min(s.table.infos[k].gap, 0.0) + s.dt * u;
+  return plane_gap(s, k) - std::min(s.table.infos[k].gap, 0.0) + s.in.dt * u;
 }
 
 }    // namespace
@@ -57,11 +57,11 @@ double plane_at_end(const State &s, std::size_t k, double u)
 void Bends::begin(State &s)
 {
   meetings_.reserve(s.table.contacts.size());
-  s.courses.shift.assign(s.bodies.size(), Vec4{});
-  s.courses.start.assign(s.bodies.size(), Vec4{});
+  s.courses.shift.assign(s.motion.bodies.size(), Vec4{});
+  s.courses.start.assign(s.motion.bodies.size(), Vec4{});
   s.courses.work = 0;
-  struck_.assign(s.bodies.size(), 0);
-  s.courses.straight.resize(s.bodies.size());
+  struck_.assign(s.motion.bodies.size(), 0);
+  s.courses.straight.resize(s.motion.bodies.size());
   for (std::size_t k = 0; k < s.table.contacts.size(); ++k)
     if (s.table.infos[k].curve < 0 && is_straight(s, s.table.contacts[k]))
       turn(s, k, separation_at_start(s, s.table.infos[k]));
@@ -74,15 +74,15 @@ void Bends::find_starts(State &s) const
       s.courses.start[i] = Vec4{};
       continue;
     }
-    const Vec4 struck = s.bodies[i] - start_velocity(s, i) - 0.5 * smooth_kick(s, i);
-    s.courses.start[i] = s.courses.shift[i] - without_fourth(struck) * (0.5 * s.dt);
+    const Vec4 struck = s.motion.bodies[i] - start_velocity(s, i) - 0.5 * smooth_kick(s, i);
+    s.courses.start[i] = s.courses.shift[i] - without_fourth(struck) * (0.5 * s.in.dt);
   }
 }
 
 double Bends::last_struck(const State &s, const Contact &c) const
 {
   const auto at = [&](int body) { return s.courses.straight[body] ? char(0) : struck_[body]; };
-  return s.dt / parts_of_step * std::max(at(c.i), at(c.j));
+  return s.in.dt / parts_of_step * std::max(at(c.i), at(c.j));
 }
 
 std::optional<double> Bends::meet(State &s, std::size_t k) const
@@ -92,12 +92,12 @@ std::optional<double> Bends::meet(State &s, std::size_t k) const
   const bool is_flat = s.table.infos[k].atom_j < 0 || is_straight(s, c);
   std::optional<double> moment = is_flat ? meet_plane(s, k, struck) : meet_grain(s, k, struck);
   if (moment) *moment += struck;
-  return moment && *moment <= s.dt ? moment : std::nullopt;
+  return moment && *moment <= s.in.dt ? moment : std::nullopt;
 }
 
 std::optional<double> Bends::meet_plane(const State &s, std::size_t k, double struck) const
 {
-  const double closing = -(normal_velocity(s.table.contacts[k], s.bodies.data()) + normal_drift(s, k));
+  const double closing = -(normal_velocity(s.table.contacts[k], s.motion.bodies.data()) + normal_drift(s, k));
   const double gap = s.table.infos[k].gap + put_apart(s, s.table.contacts[k]);
   return closing > 0 ? std::optional(std::max(gap / closing - struck, 0.0)) : std::nullopt;
 }
@@ -108,13 +108,13 @@ std::optional<double> Bends::meet_grain(State &s, std::size_t k, double struck) 
   const ContactInfo &info = s.table.infos[k];
   const Pair pair = pair_now(s, k);
   const double growth = growth_of(s, {info.atom_i, info.atom_j});
-  const double radii = s.spheres[info.atom_i].radius + s.spheres[info.atom_j].radius + growth * struck;
+  const double radii = s.atoms.spheres[info.atom_i].radius + s.atoms.spheres[info.atom_j].radius + growth * struck;
   const Vec4 start = separation_at_start(s, info), now = pair.separation + pair.parting * struck;
   const auto is_turned = [&](const Vec4 &there) {
     return dot(there, start) < most_turned * std::sqrt(dot(there, there) * dot(start, start));
   };
   const auto moment = meeting(now, radii, pair.parting, growth);
-  const Vec4 there = now + pair.parting * std::clamp(moment.value_or(s.dt - struck), 0.0, s.dt - struck);
+  const Vec4 there = now + pair.parting * std::clamp(moment.value_or(s.in.dt - struck), 0.0, s.in.dt - struck);
   if (is_turned(now) || is_turned(there)) {
     turn(s, k, start);
     return 0;
@@ -130,7 +130,7 @@ double Bends::kick_until(const State &s, std::size_t k, double moment) const
   const auto kick = [&](int body) {
     return is_grain(s, body) && !s.courses.straight[body] ? smooth_kick(s, body) : Vec4{};
   };
-  return dot(c.normal, kick(c.i) - kick(c.j)) * (moment / s.dt - 0.5);
+  return dot(c.normal, kick(c.i) - kick(c.j)) * (moment / s.in.dt - 0.5);
 }
 
 void Bends::look(State &s, const IsImpact &is_impact)
@@ -138,11 +138,11 @@ void Bends::look(State &s, const IsImpact &is_impact)
   find_starts(s);
   meetings_.clear();
   for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
-    const double before = normal_velocity(s.table.contacts[k], s.bodies.data()) + normal_drift(s, k);
+    const double before = normal_velocity(s.table.contacts[k], s.motion.bodies.data()) + normal_drift(s, k);
     if (plane_at_end(s, k, before) >= 0) continue;
     const auto moment = meet(s, k);
     if (!moment) continue;
-    const double u = normal_velocity(s.table.contacts[k], s.bodies.data()) + normal_drift(s, k);
+    const double u = normal_velocity(s.table.contacts[k], s.motion.bodies.data()) + normal_drift(s, k);
     const double kick = kick_until(s, k, *moment);
     if (is_impact(k, u + kick)) meetings_.push_back({k, *moment, kick});
   }
@@ -150,14 +150,14 @@ void Bends::look(State &s, const IsImpact &is_impact)
 
 const std::vector<Bends::Meeting> &Bends::first_meetings(State &s)
 {
-  sooner_.assign(s.bodies.size(), 0);
+  sooner_.assign(s.motion.bodies.size(), 0);
   const auto left = [&s](const Meeting &met) { return char(parts_of_step - parts(s, met.moment)); };
   const auto each = [&](const Meeting &met, auto act) {
     for (const int body : {s.table.contacts[met.contact].i, s.table.contacts[met.contact].j})
       if (is_grain(s, body)) act(body);
   };
   for (const Meeting &met : meetings_) each(met, [&](int b) { sooner_[b] = std::max(sooner_[b], left(met)); });
-  if (s.halo) s.halo->spread(sooner_);
+  if (s.exec.halo) s.exec.halo->spread(sooner_);
   std::erase_if(meetings_, [&](const Meeting &met) {
     bool later = false;
     each(met, [&](int b) { later |= left(met) < sooner_[b]; });
@@ -168,20 +168,20 @@ const std::vector<Bends::Meeting> &Bends::first_meetings(State &s)
 
 void Bends::act(State &s, std::size_t count)
 {
-  change_across(s.halo, s.courses.shift, nullptr, [&] {
+  change_across(s.exec.halo, s.courses.shift, nullptr, [&] {
     for (std::size_t k = 0; k < count; ++k) {
       const Contact &c = s.table.contacts[k];
       const double moment = s.table.impact_moment[k];
-      const Vec4 way = (c.normal * c.impulse + tangential_impulse(s, k)) * (0.5 * s.dt - moment);
+      const Vec4 way = (c.normal * c.impulse + tangential_impulse(s, k)) * (0.5 * s.in.dt - moment);
       s.courses.work += c.impulse * s.table.impact_kick[k];
       for (const int body : {c.i, c.j}) {
-        const double moved = body == c.i ? s.bodies[body][3] : -s.bodies[body][3];
+        const double moved = body == c.i ? s.motion.bodies[body][3] : -s.motion.bodies[body][3];
         if (!s.courses.straight[body]) s.courses.shift[body] += way * moved;
         if (c.impulse > 0 && is_grain(s, body)) struck_[body] = std::max(struck_[body], parts(s, moment));
       }
     }
   });
-  if (s.halo) s.halo->spread(struck_);
+  if (s.exec.halo) s.exec.halo->spread(struck_);
 }
 
 // Contacts that are to be pushed apart although they part, by more than a solved step leaves.
@@ -190,7 +190,7 @@ void Bends::find_contradictions(State &s)
   for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
     const Contact &c = s.table.contacts[k];
     const auto is_kept = [&] {
-      const double parts = std::max(0.0, normal_velocity(c, s.bodies.data()) + normal_drift(s, k));
+      const double parts = std::max(0.0, normal_velocity(c, s.motion.bodies.data()) + normal_drift(s, k));
       return plane_at_end(s, k, parts) >= -left_of_overlap(s, worth(s.table.infos[k]), s.table.infos[k].radius);
     };
     if (put_apart(s, c) == 0 || is_kept()) continue;
@@ -217,7 +217,7 @@ bool Bends::straighten(State &s)
 {
   before_ = s.courses.straight;
   find_contradictions(s);
-  if (s.halo) s.halo->spread(s.courses.straight);
+  if (s.exec.halo) s.exec.halo->spread(s.courses.straight);
   take_back(s);
   return sum_everywhere(s, double(s.courses.straight != before_)) > 0;
 }
@@ -227,10 +227,10 @@ void Bends::straighten_connected(State &s, std::size_t count)
   joined_.clear();
   for (const Contact &c : s.table.contacts)
     if (is_grain(s, c.i) && is_grain(s, c.j)) joined_.push_back({c.i, c.j});
-  islands_.find(s.bodies.size(), joined_, s.halo);
+  islands_.find(s.motion.bodies.size(), joined_, s.exec.halo);
   islands_.clear_sums();
-  for (std::size_t k = 0; k < count; ++k) islands_.add(grain_of(s.table.contacts[k], s.bodies.data()), {1, 0});
-  if (s.halo) islands_.sum(0)[0] = s.halo->sum(islands_.sum(0)[0]);
+  for (std::size_t k = 0; k < count; ++k) islands_.add(grain_of(s.table.contacts[k], s.motion.bodies.data()), {1, 0});
+  if (s.exec.halo) islands_.sum(0)[0] = s.exec.halo->sum(islands_.sum(0)[0]);
   for (int b = 0; b < s.moving(); ++b)
     if (is_grain(s, b) && islands_.sum(islands_.of(b))[0] > 0) s.courses.straight[b] = 1;
   take_back(s);

@@ -21,29 +21,29 @@ NSCD_INLINE double Displacements::rate(const State &s, std::size_t k) const
 NSCD_INLINE double solved_rate(const State &s, std::size_t k)
 {
   const Contact &c = s.table.contacts[k];
-  return normal_velocity(c, s.bodies.data()) + put_apart(s, c) / s.dt + normal_drift(s, k);
+  return normal_velocity(c, s.motion.bodies.data()) + put_apart(s, c) / s.in.dt + normal_drift(s, k);
 }
 
 // Whether the contact is left with no more overlap than the solver's tolerance leaves anyway.
 NSCD_INLINE bool Displacements::is_open(const State &s, std::size_t k, double rate) const
 {
   const ContactInfo &info = s.table.infos[k];
-  return !(info.gap + info.curve + s.dt * rate < -left_of_overlap(s, worth(info), info.radius));
+  return !(info.gap + info.curve + s.in.dt * rate < -left_of_overlap(s, worth(info), info.radius));
 }
 
 // All but impacts acts from the start of the step on.
 NSCD_INLINE Vec4 final_velocity(const State &s, int body)
 {
-  return s.bodies[body] + course_start(s, body) / s.dt;
+  return s.motion.bodies[body] + course_start(s, body) / s.in.dt;
 }
 
 void Displacements::start_half_way(const State &s)
 {
-  const std::size_t bodies = s.bodies.size();
+  const std::size_t bodies = s.motion.bodies.size();
   mean_.resize(bodies);
   final_.assign(bodies, 0);
   for (std::size_t i = 0; i < bodies; ++i) {
-    const Body &b = s.bodies[i];
+    const Body &b = s.motion.bodies[i];
     if (b[3] > 0) {
       mean_[i] = 0.5 * (start_velocity(s, int(i)) + Vec4{0, 0, 0, b[3]} + b);
     } else {
@@ -56,7 +56,7 @@ void Displacements::start_half_way(const State &s)
 void Displacements::add_shift(const State &s)
 {
   for (std::size_t i = 0; i < s.courses.shift.size(); ++i)
-    if (!final_[i]) mean_[i] += s.courses.shift[i] / s.dt;
+    if (!final_[i]) mean_[i] += s.courses.shift[i] / s.in.dt;
 }
 
 // Collected without branches, which would be mispredicted.
@@ -80,8 +80,8 @@ void Displacements::act_earlier(const State &s)
   for (const std::uint32_t k : suspects_) {
     const Contact &c = s.table.contacts[k];
     if (!(c.impulse > 0)) continue;
-    const double of_i = final_[c.i] ? 0 : s.bodies[c.i][3], of_j = final_[c.j] ? 0 : s.bodies[c.j][3];
-    const double opens = -(s.table.infos[k].gap + s.table.infos[k].curve) / s.dt;
+    const double of_i = final_[c.i] ? 0 : s.motion.bodies[c.i][3], of_j = final_[c.j] ? 0 : s.motion.bodies[c.j][3];
+    const double opens = -(s.table.infos[k].gap + s.table.infos[k].curve) / s.in.dt;
     const double missing = std::min(opens, solved_rate(s, k)) - rate(s, k);
     const double share = std::clamp(missing / ((of_i + of_j) * c.impulse), 0.0, 0.5);
     const Vec4 earlier = share * (c.normal * c.impulse + tangential_impulse(s, k));
@@ -154,14 +154,14 @@ static void turn_back(State &s, std::size_t k)
 static bool has_left_plane(const State &s, std::size_t k)
 {
   const ContactInfo &info = s.table.infos[k];
-  if (info.curve == 0 || !s.settings.overlap) return false;
+  if (info.curve == 0 || !s.in.settings.overlap) return false;
   const double end = gap_at(s, {info.atom_i, info.atom_j}, at_end);
-  return end < -*s.settings.overlap * info.radius && end < info.gap;
+  return end < -*s.in.settings.overlap * info.radius && end < info.gap;
 }
 
 static bool is_jammed(const State &s, std::size_t k, std::span<const char> jammed)
 {
-  return !jammed.empty() && jammed[grain_of(s.table.contacts[k], s.bodies.data())] != 0;
+  return !jammed.empty() && jammed[grain_of(s.table.contacts[k], s.motion.bodies.data())] != 0;
 }
 
 // Contacts that overlap since a course comes from beyond their surface.
@@ -174,9 +174,9 @@ bool Displacements::straighten_broken(State &s, std::span<const char> jammed)
     if (is_open(s, k, rate(s, k)) || is_jammed(s, k, jammed)) continue;
     const bool relied = put_apart(s, c) < 0 && rate(s, k) < 0;
     if (!relied && !has_left_plane(s, k)) continue;
-    for (const int b : {c.i, c.j}) straight[b] = s.bodies[b][3] > 0;
+    for (const int b : {c.i, c.j}) straight[b] = s.motion.bodies[b][3] > 0;
   }
-  if (s.halo) s.halo->spread(straight);
+  if (s.exec.halo) s.exec.halo->spread(straight);
   return sum_everywhere(s, double(straight != before_)) > 0;
 }
 
@@ -184,7 +184,7 @@ bool Displacements::turn_back_broken(State &s, std::span<const char> jammed)
 {
   double broken = 0;
   find_suspects(s);
-  change_across(s.halo, s.bodies, s.friction.spins.data(), [&] {
+  change_across(s.exec.halo, s.motion.bodies, s.motion.spins.data(), [&] {
     for (const std::uint32_t k : suspects_) {
       if (!has_left_plane(s, k) || is_jammed(s, k, jammed)) continue;
       turn_back(s, k);
@@ -201,9 +201,9 @@ bool Displacements::fill(State &s, std::span<const char> jammed)
   find_suspects(s);
   const bool drives = sum_everywhere(s, double(suspects_.size())) > 0;
   if (drives) {
-    change_across(s.halo, mean_, nullptr, [&] { act_earlier(s); });
+    change_across(s.exec.halo, mean_, nullptr, [&] { act_earlier(s); });
     open_contacts(s);
-    while (s.halo && s.halo->spread(final_)) {
+    while (s.exec.halo && s.exec.halo->spread(final_)) {
       for (int i = 0; i < s.moving(); ++i)
         if (final_[i]) mean_[i] = final_velocity(s, i);
       open_contacts(s);
@@ -211,7 +211,7 @@ bool Displacements::fill(State &s, std::span<const char> jammed)
   }
   for (int i = 0; i < s.moving(); ++i) {
     const Vec4 &w = mean_[i];
-    s.displacement[i] = Vec4{w[0], w[1], w[2], 0} * (way(s, i) == Way::stands ? 0.0 : s.dt);
+    s.motion.displacement[i] = Vec4{w[0], w[1], w[2], 0} * (way(s.motion, i) == Way::stands ? 0.0 : s.in.dt);
   }
   return drives && (s.courses.start.empty() ? turn_back_broken(s, jammed) : straighten_broken(s, jammed));
 }

@@ -18,10 +18,10 @@ namespace nscd {
 
 class Displacements {
  public:
-  // Fills state.displacement from the velocities in state.bodies. Returns whether pairs are driven into overlap since
+  // Fills motion.displacement from the velocities in motion.bodies. Returns whether pairs are driven into overlap since
   // they have not gone where their planes were taken, and the step has to be solved on: with planes of the start of the
   // step or, where courses relied on what contacts stop, with those of straight courses. Not for
-  // `jammed` ones, as Law::displace has it. Collective.
+  // `jammed` ones, as Scheme::displace has it. Collective.
   bool fill(State &state, std::span<const char> jammed);
 
  private:

@@ -22,7 +22,7 @@
 #include "scene/contact_plane.hpp"
 #include "scene/drift_of.hpp"
 #include "scheme/displacements.hpp"
-#include "scheme/law.hpp"
+#include "scheme/scheme.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -36,25 +36,21 @@ constexpr double tolerated_overlap = 3e-5;   // of the smaller radius, with fric
 
 NSCD_HOT void set_biases(State &s, std::size_t first)
 {
-  const double rate = 1 / s.dt, back = s.settings.recovery / s.dt;
+  const double rate = 1 / s.in.dt, back = s.in.settings.recovery / s.in.dt;
   const double tolerated = s.friction.model == Model::frictionless ? 0.0 : tolerated_overlap;
   for (std::size_t k = first; k < s.table.contacts.size(); ++k) {
     const ContactInfo &info = s.table.infos[k];
     const double overlap = std::max(0.0, -info.gap - tolerated * info.radius);
-    const double cap = recovery_cap * info.kick + tolerance(s, worth(info)) + sudden_approach(s, k);
+    const double cap = recovery_cap * info.kick + tolerance(s.scales, worth(info)) + sudden_approach(s, k);
     const double plane = open_gap(s, k);
     s.table.contacts[k].bias =
         (info.gap > 0 ? plane * rate : (plane - info.gap) * rate - std::min(overlap * back, cap)) + normal_drift(s, k);
   }
 }
 
-class Gap final : public Law {
+class Gap final : public Scheme {
  public:
-  double moment() const override { return 0.5; }
-  bool resolves_impacts(const Settings &settings) const override
-  {
-    return settings.restitution > 0 || settings.e_t > 0;
-  }
+  explicit Gap(const Settings &s) : Scheme({.moment = 0.5, .impacts_first = s.restitution > 0 || s.e_t > 0}) {}
   bool impacts(State &s, const SolvePart &solve) override { return resolve_impacts(s, bends_, solve); }
   void set_bias(State &s, std::size_t first) override { set_biases(s, first); }
   bool displace(State &s, std::span<const char> jammed) override { return displacements_.fill(s, jammed); }
@@ -66,10 +62,10 @@ class Gap final : public Law {
 
 }    // namespace
 
-static const RegisterLaw gap({.order = 20,
-                              .name = "gap",
-                              .title = "gap",
-                              .looks_ahead = true,
-                              .make = [] { return std::unique_ptr<Law>(new Gap); }});
+static const RegisterScheme gap({.order = 20,
+                                 .name = "gap",
+                                 .title = "gap",
+                                 .looks_ahead = true,
+                                 .make = [](const Settings &s) { return std::unique_ptr<Scheme>(new Gap(s)); }});
 
 }    // namespace nscd

@@ -20,19 +20,19 @@ constexpr double worth_saying = 0.01;  // of the energy that the first round had
 // Adds sign times half the smooth velocity change of the step.
 void smooth_half(State &s, double sign)
 {
-  for (int i = 0; i < s.moving(); ++i) s.bodies[i] += smooth_kick(s, i) * (0.5 * sign);
+  for (int i = 0; i < s.moving(); ++i) s.motion.bodies[i] += smooth_kick(s, i) * (0.5 * sign);
   if (s.friction.model != Model::frictionless) add_smooth_spins(s, 0.5 * sign);
 }
 
 // Biases of an impact: what is left of the velocity when they meet, drift included, reversed.
 void bias_impact(State &s, std::size_t k, double u, double kick)
 {
-  const double e = s.settings.restitution;
+  const double e = s.in.settings.restitution;
   s.table.contacts[k].bias = e * (u + kick) + kick + normal_drift(s, k);
   with_friction(s.friction.model, [&]<class M>(M) {
-    const auto slip = velocity<M>(s.table.contacts[k], s.bodies.data(), s.friction.spins.data()).t;
+    const auto slip = velocity<M>(s.table.contacts[k], s.motion.bodies.data(), s.motion.spins.data()).t;
     const auto drift = tangential_drift<M>(s, k);
-    set_bias(s.table.slides<M>()[k], (slip + drift) * s.settings.e_t + drift);
+    set_bias(s.table.slides<M>()[k], (slip + drift) * s.in.settings.e_t + drift);
   });
 }
 
@@ -50,22 +50,22 @@ Closing select_closing(State &s, Bends &bends)
   std::size_t closing = 0;
   double energy = 0;
   bends.look(s, [&](std::size_t k, double u) {
-    return u < -resting_kicks * s.table.infos[k].kick - tolerances * tolerance(s, worth(s.table.infos[k]));
+    return u < -resting_kicks * s.table.infos[k].kick - tolerances * tolerance(s.scales, worth(s.table.infos[k]));
   });
   s.table.impact_moment.open();
   s.table.impact_kick.open();
   for (const Bends::Meeting &met : bends.first_meetings(s)) {
     s.table.swap(met.contact, closing);
-    const double u = normal_velocity(s.table.contacts[closing], s.bodies.data()) + normal_drift(s, closing);
+    const double u = normal_velocity(s.table.contacts[closing], s.motion.bodies.data()) + normal_drift(s, closing);
     energy += 0.5 * s.table.contacts[closing].w_inverse * u * u;
     s.table.impact_moment[closing] = met.moment;
     s.table.impact_kick[closing] = met.kick;
     bias_impact(s, closing++, u, met.kick);
   }
   double sums[] = {double(closing), energy};
-  if (s.halo) {
-    s.halo->find_touching(s.table.contacts);
-    s.halo->sum(sums);
+  if (s.exec.halo) {
+    s.exec.halo->find_touching(s.table.contacts);
+    s.exec.halo->sum(sums);
   }
   return {closing, sums[0], sums[1]};
 }
@@ -114,7 +114,7 @@ bool resolve_impacts(State &s, Bends &bends, const SolvePart &solve)
   s.table.impact_moment.close();
   s.table.impact_kick.close();
   smooth_half(s, +1);
-  const double e = s.settings.restitution;
+  const double e = s.in.settings.restitution;
   return e * e * closing.energy > worth_saying * first_energy;
 }
 

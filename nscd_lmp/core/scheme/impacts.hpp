@@ -34,7 +34,7 @@ namespace nscd {
 using SolvePart = std::function<void(std::size_t count)>;
 
 // Bodies: in, free velocities; out, the same plus what the impacts gave them. Contacts: in and out, no impulses; the
-// closing ones are brought to the front. state.table.impact_impulse: out, what the impacts took, closed if there were none.
+// closing ones are brought to the front. impact_impulse: out, what the impacts took, closed if there were none.
 // Returns whether impacts are left that would have given back more than 1 % of the energy that the first round had: the
 // gap constraint will take it. The same on all ranks.
 // `bends`: works on the courses; kept, so that steps do not allocate.

@@ -12,23 +12,19 @@
 // on something round is pushed on, since the normal is that at q_m and the force that at q_k: its angular momentum
 // grows as exp((1 - theta) dt f t / (m r)), r being the radius of its path.
 #include "scene/drift_of.hpp"
-#include "scheme/law.hpp"
+#include "scheme/scheme.hpp"
 
 namespace nscd {
 
 namespace {
 
-class Moreau final : public Law {
+class Moreau final : public Scheme {
  public:
-  double prediction(const Settings &settings) const override { return 1 - settings.theta; }
-
-  double restitution_in_bias(const Settings &settings) const override { return settings.restitution; }
-
-  double tangential_restitution_in_bias(const Settings &settings) const override { return settings.e_t; }
+  explicit Moreau(const Settings &s) : Scheme({.prediction = 1 - s.theta, .e = s.restitution, .e_t = s.e_t}) {}
 
   void set_bias(State &s, std::size_t first) override
   {
-    const double e = s.settings.restitution;
+    const double e = s.in.settings.restitution;
     if (e == 0 && s.drift.of.empty()) return;
     for (std::size_t k = first; k < s.table.contacts.size(); ++k)
       s.table.contacts[k].bias = e * s.table.infos[k].speed_before + normal_drift(s, k);
@@ -36,10 +32,10 @@ class Moreau final : public Law {
 
   bool displace(State &s, std::span<const char>) override
   {
-    const double step = s.settings.theta * s.dt;
+    const double step = s.in.settings.theta * s.in.dt;
     for (int i = 0; i < s.moving(); ++i) {
-      const Body &b = s.bodies[i];
-      s.displacement[i] = Vec4{b[0], b[1], b[2], 0} * (way(s, i) == Way::stands ? 0.0 : step);
+      const Body &b = s.motion.bodies[i];
+      s.motion.displacement[i] = Vec4{b[0], b[1], b[2], 0} * (way(s.motion, i) == Way::stands ? 0.0 : step);
     }
     return false;
   }
@@ -47,10 +43,10 @@ class Moreau final : public Law {
 
 }    // namespace
 
-static const RegisterLaw moreau({.order = 10,
-                                 .name = "moreau",
-                                 .title = "Moreau-Jean",
-                                 .looks_ahead = false,
-                                 .make = [] { return std::unique_ptr<Law>(new Moreau); }});
+static const RegisterScheme moreau({.order = 10,
+                                    .name = "moreau",
+                                    .title = "Moreau-Jean",
+                                    .looks_ahead = false,
+                                    .make = [](const Settings &s) { return std::unique_ptr<Scheme>(new Moreau(s)); }});
 
 }    // namespace nscd

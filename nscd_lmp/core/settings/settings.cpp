@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "parallel/team.hpp"
-#include "settings/laws.hpp"
+#include "settings/schemes.hpp"
 #include "solver/solver.hpp"
 
 #include <algorithm>
@@ -151,7 +151,7 @@ static void choose_tolerance(Settings &s)
 {
   if (!s.criterion) s.criterion = Stop::natural;
   const bool of_scene = *s.criterion == Stop::natural;
-  const bool looks_ahead = find_law(s.law).looks_ahead;
+  const bool looks_ahead = find_scheme(s.law).looks_ahead;
   if (of_scene && !s.overlap && looks_ahead) s.overlap = numbers(s).overlap;
   if (!of_scene && s.accuracy)
     fail("accuracy goes with criterion natural: a tol of criterion paper is in m/s, so no word says what it is worth");
@@ -185,14 +185,14 @@ static void check_overlap(const Settings &s)
   if (!s.overlap) return;
   if (!(*s.overlap > 0 && *s.overlap <= 1))
     fail("overlap = ", *s.overlap, " is outside (0, 1]: it is a share of the smaller radius of a contact");
-  if (!find_law(s.law).looks_ahead)
+  if (!find_scheme(s.law).looks_ahead)
     fail("overlap is a condition of law gap: law ", s.law, " sees contacts only once they overlap");
 }
 
 Settings checked(Settings s, int dimension)
 {
   const SolverEntry &solver = find_solver(s.solver);
-  find_law(s.law);
+  find_scheme(s.law);
   require_range("restitution", s.restitution, 0, 1);
   check_friction(s);
   require_range("theta", s.theta, 0, 1);

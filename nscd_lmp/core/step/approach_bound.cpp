@@ -15,23 +15,24 @@ constexpr double aim = 1 - 2 * least_share;
 
 NSCD_HOT void bound_approach(State &s, std::size_t first)
 {
-  if (!s.settings.overlap) return;
+  if (!s.in.settings.overlap) return;
   s.table.per_approach.open();
   for (std::size_t k = first; k < s.table.contacts.size(); ++k) {
     const ContactInfo &info = s.table.infos[k];
-    const double deepest = aim * *s.settings.overlap * info.radius;
+    const double deepest = aim * *s.in.settings.overlap * info.radius;
     const double deeper = std::max(deepest + info.gap, least_share * deepest);
     const double bias = s.table.contacts[k].bias - normal_drift(s, k);
-    s.table.per_approach[k] = 1 / ((deeper + open_gap(s, k) - info.gap) / s.dt - bias);
+    s.table.per_approach[k] = 1 / ((deeper + open_gap(s, k) - info.gap) / s.in.dt - bias);
   }
 }
 
 void bound_approach_of_impacts(State &s, std::size_t count)
 {
-  if (!s.settings.overlap) return;
+  if (!s.in.settings.overlap) return;
   auto &per_approach = s.table.per_approach;
   per_approach.open();
-  for (std::size_t k = 0; k < count; ++k) per_approach[k] = s.dt / (*s.settings.overlap * s.table.infos[k].radius);
+  const double overlap = *s.in.settings.overlap;
+  for (std::size_t k = 0; k < count; ++k) per_approach[k] = s.in.dt / (overlap * s.table.infos[k].radius);
 }
 
 }    // namespace nscd

@@ -36,8 +36,8 @@ double share_down_to(double limit, double at0, double half, double at1)
 
 void EnergyLimit::store(const State &s, std::size_t count, Motion &m) const
 {
-  m.bodies = s.bodies;
-  m.spins = s.friction.spins;
+  m.bodies = s.motion.bodies;
+  m.spins = s.motion.spins;
   const bool slides = s.friction.model != Model::frictionless;
   m.normal.resize(count);
   if (slides) m.tangential.resize(count);
@@ -47,8 +47,8 @@ void EnergyLimit::store(const State &s, std::size_t count, Motion &m) const
 
 void EnergyLimit::load(State &s, const Motion &motion) const
 {
-  s.bodies = motion.bodies;
-  s.friction.spins = motion.spins;
+  s.motion.bodies = motion.bodies;
+  s.motion.spins = motion.spins;
   for (std::size_t k = 0; k < motion.normal.size(); ++k) s.table.contacts[k].impulse = motion.normal[k];
   with_friction(s.friction.model, [&]<class M>(M) {
     for (std::size_t k = 0; k < motion.normal.size(); ++k)
@@ -60,13 +60,13 @@ void EnergyLimit::load(State &s, const Motion &motion) const
 void EnergyLimit::load_blend(State &s, std::size_t count) const
 {
   const auto mix = [](const auto &a, const auto &b, double share) { return share == 0 ? a : a + (b - a) * share; };
-  for (std::size_t i = 0; i < s.bodies.size(); ++i) {
+  for (std::size_t i = 0; i < s.motion.bodies.size(); ++i) {
     const double share = share_[islands_.of(int(i))];
-    s.bodies[i] = mix(first_.bodies[i], second_.bodies[i], share);
-    if (!first_.spins.empty()) s.friction.spins[i] = mix(first_.spins[i], second_.spins[i], share);
+    s.motion.bodies[i] = mix(first_.bodies[i], second_.bodies[i], share);
+    if (!first_.spins.empty()) s.motion.spins[i] = mix(first_.spins[i], second_.spins[i], share);
   }
   const auto share_of = [&](std::size_t k) {
-    return share_[islands_.of(grain_of(s.table.contacts[k], s.bodies.data()))];
+    return share_[islands_.of(grain_of(s.table.contacts[k], s.motion.bodies.data()))];
   };
   for (std::size_t k = 0; k < count; ++k)
     s.table.contacts[k].impulse = mix(first_.normal[k], second_.normal[k], share_of(k));
@@ -82,15 +82,15 @@ void EnergyLimit::load_blend(State &s, std::size_t count) const
 void EnergyLimit::find_islands(const State &s, std::size_t count)
 {
   for (std::vector<double> *of_islands : {&share_, &limit_, &at_first_, &at_second_, &half_way_})
-    of_islands->reserve(s.bodies.size());   // more islands need no more
+    of_islands->reserve(s.motion.bodies.size());   // more islands need no more
   joined_.clear();
   reserve_closely(joined_, count);
   for (std::size_t k = 0; k < count; ++k) {
     const Contact &c = s.table.contacts[k];
     const bool pushes = first_.normal[k] != 0 || second_.normal[k] != 0;
-    if (pushes && s.bodies[c.i][3] > 0 && s.bodies[c.j][3] > 0) joined_.push_back({c.i, c.j});
+    if (pushes && s.motion.bodies[c.i][3] > 0 && s.motion.bodies[c.j][3] > 0) joined_.push_back({c.i, c.j});
   }
-  islands_.find(s.bodies.size(), joined_, s.halo);
+  islands_.find(s.motion.bodies.size(), joined_, s.exec.halo);
   share_.assign(islands_.count(), 0);
 }
 
@@ -103,13 +103,13 @@ void EnergyLimit::find_work(const State &s, std::size_t count, const Motion *bef
     const Contact &c = s.table.contacts[k];
     const double first = before ? normal_velocity(c, before->bodies.data()) + normal_drift(s, k)
                                 : s.table.infos[k].speed_before;
-    const double after = normal_velocity(c, s.bodies.data()) + normal_drift(s, k) + 2 * impact_kick(s, k);
-    work[islands_.of(grain_of(c, s.bodies.data()))] += 0.5 * c.impulse * (first + after);
+    const double after = normal_velocity(c, s.motion.bodies.data()) + normal_drift(s, k) + 2 * impact_kick(s, k);
+    work[islands_.of(grain_of(c, s.motion.bodies.data()))] += 0.5 * c.impulse * (first + after);
   }
   with_friction(s.friction.model, [&]<class M>(M) {
     for (std::size_t k = 0; k < count; ++k) {
       const Contact &c = s.table.contacts[k];
-      const auto after = velocity<M>(c, s.bodies.data(), s.friction.spins.data());
+      const auto after = velocity<M>(c, s.motion.bodies.data(), s.motion.spins.data());
       using Velocity = Split<typename M::Tangent>;
       const Velocity first = before ? velocity<M>(c, before->bodies.data(), before->spins.data())
                                     : Velocity{s.table.infos[k].speed_before, slip_at_start<M>(s, k)};
@@ -119,10 +119,10 @@ void EnergyLimit::find_work(const State &s, std::size_t count, const Motion *bef
         twice += (before ? 2 : 1) * c.impulse * normal_drift(s, k);   // speed_before has it
         twice += 2 * inner(s.table.slides<M>()[k].impulse, tangential_drift<M>(s, k));
       }
-      work[islands_.of(grain_of(c, s.bodies.data()))] += 0.5 * twice;
+      work[islands_.of(grain_of(c, s.motion.bodies.data()))] += 0.5 * twice;
     }
   });
-  if (s.halo) work[0] = s.halo->sum(work[0]);
+  if (s.exec.halo) work[0] = s.exec.halo->sum(work[0]);
 }
 
 // Contacts that overlap, or whose plane is nearer than their gap, are pushed apart at the speed in their biases.
@@ -131,7 +131,7 @@ void EnergyLimit::allow_recovery(const State &s, std::size_t count)
   for (std::size_t k = 0; k < count; ++k) {
     const Contact &c = s.table.contacts[k];
     const double apart = std::max(0.0, normal_drift(s, k) - c.bias);
-    limit_[islands_.of(grain_of(c, s.bodies.data()))] += apart * c.impulse;
+    limit_[islands_.of(grain_of(c, s.motion.bodies.data()))] += apart * c.impulse;
   }
 }
 
@@ -145,10 +145,10 @@ bool EnergyLimit::find_excess(State &s, std::size_t count, const Motion *before,
   if (gives_back) allow_recovery(s, count);
   for (std::size_t k = 0; k < count; ++k) {
     const Contact &c = s.table.contacts[k];
-    const double error = tolerances * tolerance(s, worth(s.table.infos[k])) * std::abs(c.impulse);
-    limit_[islands_.of(grain_of(c, s.bodies.data()))] += error;
+    const double error = tolerances * tolerance(s.scales, worth(s.table.infos[k])) * std::abs(c.impulse);
+    limit_[islands_.of(grain_of(c, s.motion.bodies.data()))] += error;
   }
-  if (s.halo) limit_[0] = s.halo->sum(limit_[0]);
+  if (s.exec.halo) limit_[0] = s.exec.halo->sum(limit_[0]);
   bool any = false;
   for (int island = 0; island < islands_.count(); ++island) any |= at_first_[island] > limit_[island];
   return sum_everywhere(s, any) > 0;
@@ -191,7 +191,7 @@ bool EnergyLimit::limit_restitution(State &s, std::size_t count, From from, cons
 bool EnergyLimit::makes_energy(State &s, std::size_t count, bool gives_back)
 {
   store(s, count, first_);
-  change_across(s.halo, s.bodies, s.friction.spins.data(), [&] {
+  change_across(s.exec.halo, s.motion.bodies, s.motion.spins.data(), [&] {
     for (std::size_t k = 0; k < count; ++k) remove_impulse(s, k);
   });
   store(s, count, second_);

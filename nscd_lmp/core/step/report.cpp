@@ -35,15 +35,15 @@ int contact_columns(const Settings &settings)
 
 void fill_contact_rows(const State &s, double *row)
 {
-  const int columns = contact_columns(s.settings);
-  const double per_force = s.grains.force_to_acceleration;   // impulses are mass times velocity within
+  const int columns = contact_columns(s.in.settings);
+  const double per_force = s.in.grains.force_to_acceleration;   // impulses are mass times velocity within
   for (std::size_t k = 0; k < s.table.contacts.size(); ++k, row += columns) {
     const Contact &c = s.table.contacts[k];
     const ContactInfo &info = s.table.infos[k];
     const Sphere a = in_arrays(s, info.atom_i);
     const Vec4 point = a.centre - c.normal * (a.radius + 0.5 * info.gap);
-    row[0] = s.grains.tag[info.atom_i];
-    row[1] = info.atom_j >= 0 ? s.grains.tag[info.atom_j] : info.atom_j;
+    row[0] = s.in.grains.tag[info.atom_i];
+    row[1] = info.atom_j >= 0 ? s.in.grains.tag[info.atom_j] : info.atom_j;
     for (int d = 0; d < 3; ++d) {
       row[2 + d] = point[d];
       row[5 + d] = c.normal[d];

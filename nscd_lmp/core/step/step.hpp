@@ -2,7 +2,6 @@
 #pragma once
 
 #include "parallel/halo.hpp"
-#include "parallel/team.hpp"
 #include "scene/belts.hpp"
 #include "scene/detection.hpp"
 #include "scene/drift.hpp"
@@ -10,11 +9,10 @@
 #include "scene/list_guard.hpp"
 #include "scene/missed_pairs.hpp"
 #include "scene/state.hpp"
-#include "scheme/law.hpp"
-#include "solver/solver.hpp"
-#include "step/calm.hpp"
-#include "step/energy_limit.hpp"
+#include "scheme/scheme.hpp"
 #include "step/remarks.hpp"
+#include "step/rounds.hpp"
+#include "step/solves.hpp"
 #include "warm_start/warm_start.hpp"
 
 #include <cstdint>
@@ -25,7 +23,7 @@
 
 namespace nscd {
 
-// What a step reports; the columns of the stats table and of fix nscd's vector.
+// What a step reports, written once, at its end; the columns of the stats table and of fix nscd's vector.
 struct StepReport {
   std::int64_t contacts = 0;
   int iterations = 0;
@@ -51,9 +49,7 @@ struct StepReport {
 
 class Step {
  public:
-  // Takes the place of the built-in solver: reads the first `contacts` contacts (all of the step's, or those of a round
-  // of impacts), overwrites their start impulses (N s; per contact N, or N, T1[, T2] along tangents()).
-  using CustomSolver = std::function<void(const State &, std::size_t contacts, std::span<double>)>;
+  using CustomSolver = nscd::CustomSolver;
 
   // `dimension`: 3, or 2 for grains in a plane z = const; with the settings it decides how many unknowns a contact has.
   // Raises Error for bad settings, or for settings that do not fit the dimension.
@@ -82,7 +78,7 @@ class Step {
 
   const StepReport &report() const { return report_; }
   const Settings &settings() const { return settings_; }
-  bool has_custom_solver() const { return bool(custom_); }
+  bool has_custom_solver() const { return solves_.is_custom(); }
   const State &state() const { return state_; }
   const Halo *halo() const { return halo_.get(); }
   // What users are to be told of the steps since they were last told.
@@ -99,70 +95,54 @@ class Step {
  private:
   bool looks_ahead() const { return look_ahead_ > 0; }
   // How far around q_k contacts are sought, m, for a grain of this speed.
-  double longest_move(double speed) const { return state_.dt * speed * (look_ahead_ + prediction_); }
-  // Runs `local`, on several ranks so that all fail if one does.
-  void together(const std::function<void()> &local);
-  void prepare(const PairList &pairs);
+  double longest_move(double speed) const { return state_.in.dt * speed * (look_ahead_ + prediction_); }
+  // What is known of a step before its contacts are.
+  struct Seen {
+    bool unread_torque;
+    double move_ratio;
+  };
+  // What contacts have done in a step, over all ranks.
+  struct Tally {
+    Overlap largest;
+    double dissipated;         // J
+    double pushed, passed2;    // as reported
+  };
+  // Since begin_run.
+  struct Totals {
+    double dissipated = 0;
+    long unconverged = 0, accepted = 0, energy_limited = 0;
+  };
+  Seen prepare(const PairList &pairs);
   void require_list(double speed);
   void watch_unlisted();
   void refuse_unwatchable();
   [[noreturn]] void refuse_missed(double cutoff) const;
   void refuse_unless_all_known() const;
   void refuse_drifting(double ahead) const;
-  void start_contacts(std::size_t first, bool again);
-  void start_turned();
-  void begin_rounds();
-  void solve();
-  bool promote();
-  void resolve_impacts_first(bool again);
-  void judge();
-  // One solve of a step.
-  struct Part {
-    std::size_t contacts;  // the first ones of the step
-    double e, e_t;         // restitution that the biases contain
-    double norm;           // of free velocities and biases
-    double tol = 1;        // of options_.tol
-  };
-  bool doubts_contacts() const;
-  bool sweep_briefly(const Part &part, int sweeps);
-  bool solve_part(const Part &part, int maxiter);
-  void share_among_threads(std::size_t contacts);
-  SolverReport solve_problem(Problem &problem, const SolverOptions &options);
-  void solve_within_energy(const Part &part, EnergyLimit::From from);
-  void ask_custom(std::size_t count);
-  void finish();
-  void tally_contacts();
+  void count(const Solves::Outcome &solved);
+  void refuse_unsolved(const Rounds::Result &rounds) const;
+  Tally finish(double calmed);
+  Tally tally_contacts(double calmed);
   void write_back();
+  void write_report(const Seen &seen, const Rounds::Result &rounds, const Tally &tally, double seconds);
 
   const Settings settings_;
-  const SolverEntry *solver_;
-  CustomSolver custom_;
-  const std::unique_ptr<Law> law_;
+  const std::unique_ptr<Scheme> scheme_;
   State state_;
   const std::unique_ptr<Halo> halo_;   // none on one rank
-  const std::unique_ptr<Team> team_;   // none on one thread
   ListGuard list_;
   Belts belts_;
   Drifts drifts_;
-  const PairList *pairs_ = nullptr;    // of the step
   LeftPlaces left_;
   WarmStart memory_;
-  EnergyLimit energy_limit_;
-  Calm calm_;
-  Calm::Found calmed_;             // in the last solve
-  SolverOptions options_;
-  Workspace workspace_;
   StepReport report_;
+  Totals totals_;
   Remarks remarks_;
   const double prediction_;        // contacts are sought at q_k + prediction dt v_k
   const double look_ahead_;        // and this times dt |v| around (0 or 1)
+  Solves solves_;
   const Sought sought_;            // all pairs within reach where another round costs as much as the first
-  AlignedVector<Body> free_bodies_;  // as gathered, where impacts may have to be resolved again
-  AlignedVector<Vec4> free_spins_;
-  bool energy_limited_ = false;    // in this step
-  bool shared_among_threads_ = false;   // the contacts that are being solved
-  int started_at_ = 0;             // iterations of the step before the solves that share a budget
-  double free_norm_ = 0;           // of the step's contacts, m/s
+  Rounds rounds_;
   MissedPairs missed_{list_};
   std::set<std::pair<int, int>> unlisted_;   // pairs that were found beyond the list after a solve of this step
   double listed_ = 0, moved_ = 0;  // as Reach has them

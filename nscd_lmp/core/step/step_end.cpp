@@ -11,13 +11,13 @@
 namespace nscd {
 
 // Warm start remembers what lasts, the contacts' impulses; what the step reports has the impacts' too.
-void Step::finish()
+Step::Tally Step::finish(double calmed)
 {
   if (settings_.warmstart) memory_.remember(state_);
   ContactTable &table = state_.table;
   for (std::size_t k = 0; k < table.impact_impulse.size(); ++k) table.contacts[k].impulse += table.impact_impulse[k];
   add_slide_impulses(state_, state_.table.impact_tangential);
-  tally_contacts();
+  return tally_contacts(calmed);
 }
 
 // Twice what contacts have done to grains, without what moving obstacles gave, J in the units of m v^2. Where planes
@@ -26,26 +26,26 @@ static double work_on_grains(const State &s)
 {
   const bool spins = s.friction.model != Model::frictionless;
   double work = 2 * s.courses.work;
-  for (int i = 0; i < s.grains.owned; ++i) {
-    const Body &b = s.bodies[i];
+  for (int i = 0; i < s.in.grains.owned; ++i) {
+    const Body &b = s.motion.bodies[i];
     if (b[3] == 0) continue;
     const Vec4 before = start_velocity(s, i), after = without_fourth(b);
     work += dot(after - before - smooth_kick(s, i), before + after) / b[3];
     if (!spins) continue;
-    const Vec4 spin = s.friction.spins[i], start = start_spin(s, i);
+    const Vec4 spin = s.motion.spins[i], start = start_spin(s, i);
     work += dot(spin - start - smooth_spin_kick(s, i), start + spin) / (b[3] * s.friction.spin_response);
   }
   for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
     const Contact &c = s.table.contacts[k];
     const Vec4 push = c.normal * c.impulse + tangential_impulse(s, k);
-    if (s.bodies[c.i][3] == 0) work += 2 * dot(push, without_fourth(s.bodies[c.i]));
-    if (s.bodies[c.j][3] == 0) work -= 2 * dot(push, without_fourth(s.bodies[c.j]));
+    if (s.motion.bodies[c.i][3] == 0) work += 2 * dot(push, without_fourth(s.motion.bodies[c.i]));
+    if (s.motion.bodies[c.j][3] == 0) work -= 2 * dot(push, without_fourth(s.motion.bodies[c.j]));
   }
   return work;
 }
 
 // Overlap at q_{k+1}, and the energy the contacts took: -sum p (u^k + u^{k+1}) / 2, exact for any step.
-NSCD_HOT void Step::tally_contacts()
+NSCD_HOT Step::Tally Step::tally_contacts(double calmed)
 {
   const State &s = state_;
   double overlap = 0, ratio = 0, work = tangential_work(s);
@@ -53,50 +53,46 @@ NSCD_HOT void Step::tally_contacts()
   for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
     const Contact &c = s.table.contacts[k];
     ContactInfo &info = state_.table.infos[k];
-    work += c.impulse * (info.speed_before + normal_velocity(c, s.bodies.data()));
-    const Sphere &a = s.spheres[info.atom_i];
-    Vec4 separation = a.centre + s.displacement[c.i];
+    work += c.impulse * (info.speed_before + normal_velocity(c, s.motion.bodies.data()));
+    const Sphere &a = s.atoms.spheres[info.atom_i];
+    Vec4 separation = a.centre + s.motion.displacement[c.i];
     if (!s.drift.of.empty()) {
       info.gap = gap_at(s, {info.atom_i, info.atom_j}, in_arrays);
-      info.radius = s.grains.radius[info.atom_i];
-      if (info.atom_j >= 0) info.radius = std::min(info.radius, s.grains.radius[info.atom_j]);
+      info.radius = s.in.grains.radius[info.atom_i];
+      if (info.atom_j >= 0) info.radius = std::min(info.radius, s.in.grains.radius[info.atom_j]);
       work -= c.impulse * normal_drift(s, k);   // which speed_before has
     } else if (info.atom_j >= 0) {
-      const Sphere &b = s.spheres[info.atom_j];
-      separation -= b.centre + s.displacement[c.j];
+      const Sphere &b = s.atoms.spheres[info.atom_j];
+      separation -= b.centre + s.motion.displacement[c.j];
       info.gap = std::sqrt(dot(separation, separation)) - a.radius - b.radius;
       pushed += c.impulse;
-      passed2 += c.impulse * speed2(s.bodies[c.i] - s.bodies[c.j]) / (info.radius * info.radius);
+      passed2 += c.impulse * speed2(s.motion.bodies[c.i] - s.motion.bodies[c.j]) / (info.radius * info.radius);
     } else {
-      info.gap += dot(c.normal, s.displacement[c.i]);
+      info.gap += dot(c.normal, s.motion.displacement[c.i]);
     }
     overlap = std::max(overlap, -info.gap);
     ratio = std::max(ratio, -info.gap / info.radius);
   }
-  const Overlap &watched = s.watched_overlap;
+  const Overlap &watched = s.search.watched_overlap;
   double largest[] = {std::max(overlap, watched.length), std::max(ratio, watched.ratio)};
   if (halo_) halo_->max(largest);
-  report_.largest_overlap = largest[0];
-  report_.largest_overlap_ratio = largest[1];
   if (!s.courses.start.empty()) work = work_on_grains(s);
-  work -= 2 * calmed_.energy;
+  work -= 2 * calmed;
   double sums[] = {work, pushed, passed2};
   if (halo_) halo_->sum(sums);
-  report_.dissipated_in_step = -0.5 * s.grains.square_to_energy * sums[0];
-  report_.pushed = sums[1];
-  report_.passed2 = 0.25 * s.dt * s.dt * sums[2];
-  report_.dissipated += report_.dissipated_in_step;
+  const double dissipated = -0.5 * s.in.grains.square_to_energy * sums[0];
+  return {{largest[0], largest[1]}, dissipated, sums[1], 0.25 * s.in.dt * s.in.dt * sums[2]};
 }
 
 void Step::write_back()
 {
-  const Grains &g = state_.grains;
+  const Grains &g = state_.in.grains;
   for (int i = 0; i < g.owned; ++i) {
-    const Body &b = state_.bodies[i];
+    const Body &b = state_.motion.bodies[i];
     if (b[3] == 0) continue;
     double *x = g.x + 3 * std::size_t(i), *v = g.v + 3 * std::size_t(i), *f = g.f + 3 * std::size_t(i);
     const Vec4 moved = moved_in_arrays(state_, i);
-    const double per_force = state_.dt * g.force_to_acceleration * b[3];
+    const double per_force = state_.in.dt * g.force_to_acceleration * b[3];
     for (int d = 0; d < 3; ++d) {
       const double free = v[d] + f[d] * per_force;
       f[d] = (b[d] - free) / per_force;
@@ -107,6 +103,32 @@ void Step::write_back()
   if (state_.friction.model != Model::frictionless) write_back_spins(state_);
   drifts_.leave(state_);
   belts_.see(g);
+}
+
+void Step::write_report(const Seen &seen, const Rounds::Result &rounds, const Tally &tally, double seconds)
+{
+  const Solves::Outcome &solved = solves_.outcome();
+  totals_.dissipated += tally.dissipated;
+  report_ = {.contacts = rounds.contacts,
+             .iterations = solved.iterations,
+             .criterion = solved.criterion,
+             .largest_overlap = tally.largest.length,
+             .largest_overlap_ratio = tally.largest.ratio,
+             .largest_move_ratio = seen.move_ratio,
+             .pushed = tally.pushed,
+             .passed2 = tally.passed2,
+             .dissipated_in_step = tally.dissipated,
+             .dissipated = totals_.dissipated,
+             .unconverged = totals_.unconverged,
+             .accepted_steps = totals_.accepted,
+             .energy_limited = totals_.energy_limited,
+             .unread_torque = seen.unread_torque,
+             .converged = solved.converged,
+             .accepted = solved.accepted,
+             .jammed = rounds.jammed,
+             .impacts_left = rounds.impacts_left,
+             .seconds_contacts = seconds - solved.seconds,
+             .seconds_solver = solved.seconds};
 }
 
 }    // namespace nscd

@@ -22,8 +22,9 @@ double farthest_solved(const State &s, double prediction, double look_ahead)
 {
   double farthest = 0;
   for (int b = 0; b < s.moving(); ++b) {
-    const double ahead = look_ahead * s.dt, sought = prediction * s.dt;
-    const double on2 = std::max(dot(s.displacement[b], s.displacement[b]), ahead * ahead * speed2(s.bodies[b]));
+    const double ahead = look_ahead * s.in.dt, sought = prediction * s.in.dt;
+    const Vec4 &displacement = s.motion.displacement[b];
+    const double on2 = std::max(dot(displacement, displacement), ahead * ahead * speed2(s.motion.bodies[b]));
     farthest = std::max(farthest, sought * std::sqrt(speed2(start_velocity(s, b))) + std::sqrt(on2));
   }
   return farthest;
@@ -32,9 +33,9 @@ double farthest_solved(const State &s, double prediction, double look_ahead)
 // Collective.
 double largest_radius(const State &s)
 {
-  const double *radius = s.grains.radius;
-  const double here = s.grains.owned ? *std::max_element(radius, radius + s.grains.owned) : 0;
-  return s.halo ? s.halo->max(here) : here;
+  const double *radius = s.in.grains.radius;
+  const double here = s.in.grains.owned ? *std::max_element(radius, radius + s.in.grains.owned) : 0;
+  return s.exec.halo ? s.exec.halo->max(here) : here;
 }
 
 }    // namespace
@@ -45,11 +46,11 @@ static double cutoff_to_type(const State &s, const MissedPairs &missed)
 {
   double needed = 2 * missed.largest_radius();
   for (const Missed &m : missed.pairs()) {
-    const double radii = s.spheres[m.pair.atom_i].radius + s.spheres[m.pair.atom_j].radius;
+    const double radii = s.atoms.spheres[m.pair.atom_i].radius + s.atoms.spheres[m.pair.atom_j].radius;
     needed = std::max(needed, m.listed + std::max(m.approach, 0.0) + 2 * missed.largest_radius() - radii);
   }
   if (missed.beyond()) needed = std::max(needed, missed.beyond()->distance);
-  return rounded_up(s.halo ? s.halo->max(needed) : needed);
+  return rounded_up(s.exec.halo ? s.exec.halo->max(needed) : needed);
 }
 
 // Of several the one that was farthest.
@@ -59,8 +60,8 @@ void Step::refuse_missed(double cutoff) const
   const Missed &m = *std::max_element(missed_.pairs().begin(), missed_.pairs().end(), nearer);
   const auto [i, j] = m.pair;
   const double held = missed_.cutoff(i, j);
-  const double now = m.gap + state_.spheres[i].radius + state_.spheres[j].radius;
-  fail("contacts could be missed: grains ", state_.grains.tag[i], " and ", state_.grains.tag[j], " are ", m.gap,
+  const double now = m.gap + state_.atoms.spheres[i].radius + state_.atoms.spheres[j].radius;
+  fail("contacts could be missed: grains ", state_.in.grains.tag[i], " and ", state_.in.grains.tag[j], " are ", m.gap,
        " apart and approach by ", m.approach, " in this step, but were not listed: their centres were ", m.listed,
        " apart when the neighbor list was built, and it holds pairs up to ", held,
        ": raise the cutoff of the pair style to ", cutoff, ", or use a ",
@@ -73,8 +74,9 @@ void Step::refuse_unless_all_known() const
 {
   if (!missed_.beyond()) return;
   const auto [atom, distance] = *missed_.beyond();
-  fail("contacts could be missed: grain ", state_.grains.tag[atom], " can meet one that was ", distance, " away when ",
-       "the neighbor list was built, and images reach only ", missed_.images(), " beyond the border of the box, or ",
+  fail("contacts could be missed: grain ", state_.in.grains.tag[atom], " can meet one that was ", distance,
+       " away when ", "the neighbor list was built, and images reach only ", missed_.images(),
+       " beyond the border of the box, or ",
        "of a rank's part of it: use comm_modify cutoff ", rounded_up(distance), ", or a smaller timestep");
 }
 
@@ -102,7 +104,7 @@ void Step::require_list(double speed)
   free_motion(missed_.motion(), state_, prediction_, look_ahead_);
   if (!missed_.find(state_, 0)) return;
   const double cutoff = cutoff_to_type(state_, missed_);
-  together([&] {
+  together(halo_.get(), [&] {
     if (!missed_.pairs().empty()) refuse_missed(cutoff);
     refuse_unless_all_known();
   });
@@ -112,7 +114,7 @@ void Step::require_list(double speed)
 // Where contacts are not sought ahead they can only overlap: that is reported, and no reason to refuse the step.
 void Step::watch_unlisted()
 {
-  double farthest = farthest_solved(state_, prediction_, look_ahead_) + state_.dt * state_.drift.fastest;
+  double farthest = farthest_solved(state_, prediction_, look_ahead_) + state_.in.dt * state_.drift.fastest;
   if (halo_) farthest = halo_->max(farthest);
   if (Reach{listed_, moved_, farthest}.is_enough()) return;
   const bool for_contacts = look_ahead_ > 0;
@@ -122,14 +124,14 @@ void Step::watch_unlisted()
   if (for_contacts) refuse_unwatchable();
   if (missed_.excludes()) return;
   for (const Missed &m : missed_.pairs())
-    if (unlisted_.insert({m.pair.atom_i, m.pair.atom_j}).second) state_.near.push_back({m.pair, m.gap});
+    if (unlisted_.insert({m.pair.atom_i, m.pair.atom_j}).second) state_.search.near.push_back({m.pair, m.gap});
 }
 
 // Pairs that cannot be watched, since they may be excluded ones, or an image is not here.
 void Step::refuse_unwatchable()
 {
   const double cutoff = cutoff_to_type(state_, missed_);
-  together([&] {
+  together(halo_.get(), [&] {
     refuse_unless_all_known();
     if (missed_.excludes() && !missed_.pairs().empty()) refuse_missed(cutoff);
   });
@@ -138,19 +140,19 @@ void Step::refuse_unwatchable()
 // Forces can change by as much as they do to velocities in a step.
 bool Step::wants_rebuild()
 {
-  const double drifts = state_.dt * state_.drift.fastest;
+  const double drifts = state_.in.dt * state_.drift.fastest;
   double reduced[] = {0, list_.farthest_moved(state_) + 0.5 * drifts_.neared() + drifts};
   auto &[farthest, moved] = reduced;
-  for (int i = 0; i < state_.grains.owned; ++i) {
-    const Body &b = state_.bodies[i];
+  for (int i = 0; i < state_.in.grains.owned; ++i) {
+    const Body &b = state_.motion.bodies[i];
     const double speed = std::sqrt(speed2(b));
-    farthest = std::max(farthest, longest_move(b[3] > 0 ? speed + state_.smooth_kick : speed));
+    farthest = std::max(farthest, longest_move(b[3] > 0 ? speed + state_.scales.smooth_kick : speed));
   }
   if (halo_) halo_->max(reduced);
   if (Reach{listed_, moved, farthest + drifts}.is_enough()) return false;
   if (drifts > 0) return true;
   next_motion(missed_.motion(), state_, look_ahead_ + prediction_);
-  return missed_.find(state_, 2 * longest_move(state_.smooth_kick));
+  return missed_.find(state_, 2 * longest_move(state_.scales.smooth_kick));
 }
 
 }    // namespace nscd

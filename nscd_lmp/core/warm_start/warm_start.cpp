@@ -57,8 +57,8 @@ NSCD_HOT void recall_all(State &s, const Memory &memory, std::size_t first)
     c.impulse = known ? known->normal : 0;
     slides[k].impulse = known ? turned_impulse(*known, c.normal) : typename M::Tangent{};
     if (!known) continue;
-    apply_impulse(c, c.impulse, s.bodies.data());
-    apply_tangential<M>(c, slides[k].impulse, s.friction.spin_response, s.bodies.data(), s.friction.spins.data());
+    apply_impulse(c, c.impulse, s.motion.bodies.data());
+    apply_tangential<M>(c, slides[k].impulse, s.friction.spin_response, s.motion.bodies.data(), s.motion.spins.data());
   }
 }
 
@@ -84,7 +84,7 @@ NSCD_HOT void WarmStart::recall_normal(State &s, std::size_t first) const
     const NormalImpulse *known = normal_.recall(s.table.infos[k].key);
     Contact &c = s.table.contacts[k];
     c.impulse = known ? known->normal : 0;
-    apply_impulse(c, c.impulse, s.bodies.data());
+    apply_impulse(c, c.impulse, s.motion.bodies.data());
   }
 }
 

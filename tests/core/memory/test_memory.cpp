@@ -36,11 +36,12 @@ struct Sizes {
   std::size_t contacts = 0, watched = 0, pairs = 0, impacts = 0;
   std::size_t room = 0;   // for watched pairs, of which there are most ahead of the solve
   explicit Sizes(const nscd::State &state) :
-      contacts(state.table.contacts.size()), watched(state.near.size()), impacts(state.table.impact_impulse.size()),
-      room(state.near.capacity())
+      contacts(state.table.contacts.size()), watched(state.search.near.size()),
+      impacts(state.table.impact_impulse.size()),
+      room(state.search.near.capacity())
   {
     for (const auto &info : state.table.infos) pairs += info.atom_j >= 0;
-    for (const auto &near : state.near) pairs += near.pair.atom_j >= 0;
+    for (const auto &near : state.search.near) pairs += near.pair.atom_j >= 0;
   }
   Sizes() = default;
   bool within(const Sizes &s) const
@@ -102,7 +103,7 @@ static void check_discs(const std::string &keywords)
 
 TEST(steady_steps_allocate_nothing)
 {
-  for (const auto &law : nscd::laws())
+  for (const auto &law : nscd::schemes())
     for (const auto &solver : nscd::solvers())
       for (const char *e : {"0", "0.5"}) {
         if (solver.kind == "global" && solver.name != "apgs") continue;  // factorisations allocate
@@ -112,7 +113,7 @@ TEST(steady_steps_allocate_nothing)
 
 TEST(steady_steps_with_friction_allocate_nothing)
 {
-  for (const auto &law : nscd::laws())
+  for (const auto &law : nscd::schemes())
     for (const char *solver : {"pdas", "ebp restitution 0.5 e_t 0.5", "pdas restitution 0.5"}) {
       const std::string words = "friction 0.5 law " + std::string(law.name) + " solver " + solver;
       check_spheres(words);
@@ -170,7 +171,7 @@ static const std::string solved = " criterion paper tol 1e3";   // whatever swee
 // of the law, with what vectors and table hold in reserve.
 TEST(a_contact_takes_at_most_300_bytes)
 {
-  for (const auto &law : nscd::laws())
+  for (const auto &law : nscd::schemes())
     CHECK(bytes_per_contact("solver ebp restitution 0.5 law " + std::string(law.name) + solved) <= 300);
 }
 
@@ -179,7 +180,7 @@ TEST(a_contact_takes_at_most_300_bytes)
 // the motion and by its islands, of which there is one grain a contact here.
 TEST(a_contact_with_friction_takes_at_most_420_bytes_in_the_plane_and_600_in_space)
 {
-  for (const auto &law : nscd::laws())
+  for (const auto &law : nscd::schemes())
     for (const char *impacts : {"", " restitution 0.5"}) {
       const std::string words = "friction 0.5 solver ebp law " + std::string(law.name) + impacts;
       CHECK(bytes_per_contact(words + solved, 2) <= 420);
