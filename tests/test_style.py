@@ -90,3 +90,19 @@ def test_registered_entries_name_their_members() -> None:
     files = [path for place in places for path in place.rglob("*") if path.suffix in (".cpp", ".md")]
     first = [word for path in files for word in entry.findall(path.read_text())]
     assert len(first) >= 14 and set(first) == {".order"}
+
+
+def test_every_source_file_names_its_licence() -> None:
+    """First line, or second behind a ``#!``."""
+    folders = ("nscd_lmp", "analysis", "benchmarks", "docs", "inputs", "tests", "cmake", ".ci")
+    files = [path for folder in folders for path in (ROOT / folder).rglob("*") if path.is_file()]
+    sources = [
+        path
+        for path in [ROOT / "CMakeLists.txt", *files]
+        if path.suffix in (".py", ".cpp", ".hpp", ".cmake")
+        or path.name == "CMakeLists.txt"
+        or path.relative_to(ROOT).parts[0] in ("inputs", ".ci")
+    ]
+    named = re.compile(r"(#!.*\n)?(//|#) SPDX-License-Identifier: GPL-2\.0-or-later\n")
+    assert [str(path.relative_to(ROOT)) for path in sources if not named.match(path.read_text())] == []
+    assert 'license = "GPL-2.0-or-later"' in (ROOT / "pyproject.toml").read_text()
