@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A shaded picture of a bed of spheres in its box, coloured by height, speed or radius.
 
 python bed_picture.py bed.dump --color height --output bed_picture.png

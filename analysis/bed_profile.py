@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Bed height and packing fraction profile phi(z) of a bed of spheres.
 
 The solid volume in each slab is the exact sphere-slab intersection, so the profile sums up to the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """One look for all pictures: fonts, colours, length units, saving."""
 
 from __future__ import annotations

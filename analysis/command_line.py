@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What the command lines of the analysis scripts share."""
 
 from __future__ import annotations

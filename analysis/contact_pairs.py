@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Pairs of spheres, and spheres and planes, that touch or nearly touch; gaps in float64.
 
 MDAnalysis finds the candidates, in float32 and with a margin for its rounding; each gap is then

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Coordination number: contacts per grain, with and without rattlers.
 
 Two grains touch if their gap is at most TOLERANCE times the mean radius of the pair; a grain and a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The headers of a LAMMPS text dump: step, atom count, box and column names of each frame.
 
 MDAnalysis keeps a box as three float32 lengths and drops its origin and its boundary letters, and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Kinetic energy of the grains against time, on a logarithmic axis.
 
 Masses come from the column ``mass``, or from --density and the radii of spheres. The energy of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Overlap of grains over the radius: distribution in one frame, largest and mean over all frames.
 
 The overlap is related to the smaller radius of the pair (to the grain's own radius at a wall). It

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A LAMMPS dump of spheres as an MDAnalysis Universe with float64 arrays per frame.
 
 Write the dump with::

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Shaded spheres by ray casting, in numpy alone.
 
 Each pixel casts a ray and keeps the nearest sphere (a z-buffer), so intersecting and crowded grains

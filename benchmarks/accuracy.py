@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Accuracy against speed: rigid contacts and LAMMPS' penalty contacts on the same scenes, one thread.
 
 sedimentation   in.sedimentation (law gap at several steps, law moreau at the paper's) and its penalty twin

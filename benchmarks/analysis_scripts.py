@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What the benchmarks share with the scripts of analysis/, which lie beside each other and are no package."""
 
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """SimBenchmark's "666 balls": 6 x 6 x 6 spheres that fall on a floor without friction and spread.
 
 Source: D. Kang and J. Hwangbo, SimBenchmark (2018), leggedrobotics.github.io/SimBenchmark. Its numbers for

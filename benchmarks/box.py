@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The box of in.sedimentation."""
 
 from __future__ import annotations

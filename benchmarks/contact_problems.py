@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Contact problems of one step, posed without LAMMPS: where solvers are easy, hard and hopeless."""
 
 from __future__ import annotations

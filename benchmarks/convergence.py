@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Figure 4: how criterion (42) falls with the NLGS iterations of one step, law by law."""
 
 from __future__ import annotations

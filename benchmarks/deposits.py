@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """How dense grains lie that have fallen, over the step and over the coefficient of friction.
 
 2048 grains of 0.9 to 1.1 mm fall from a loose lattice, with random velocities, onto a flat floor with as much friction

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A loose cloud of discs over a floor between two sides: the planar scene."""
 
 from __future__ import annotations

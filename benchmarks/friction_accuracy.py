@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What the presets of `accuracy` cost with friction, and what of it users see; and springs on the same scene.
 
 Grains of 0.25 to 0.5 mm fall from a lattice into a box (0.15 s). Then gravity is tilted by 12 degrees (0.1 s).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The local laws with Coulomb friction: iterations, seconds and failures over the coefficient.
 
 Two settled beds of 500 grains, balls (three unknowns a contact) and discs (two), `law gap`, a step of 1e-4 s,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The memory that compiled code holds, as the C library counts it."""
 
 from __future__ import annotations

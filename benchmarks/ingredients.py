@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What each ingredient of the model costs: where a scene does not need it, and where it does.
 
 A settled bed is run again from the same state with one thing added at a time, beside the bed as it is; the two take

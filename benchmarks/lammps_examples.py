@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """LAMMPS' own granular examples, by its springs and by rigid grains with the defaults of fix nscd.
 
 springs   the contacts and the step of the example

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes after LAMMPS' own granular examples: their sizes, stiffnesses, steps and walls, in units lj.
 
 A scene has the grains (`common`), what LAMMPS' springs need beside them (`springs`), what `fix nscd` needs (`walls`,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What this machine can do at most, measured beside what is compared with it: one thread."""
 
 from __future__ import annotations

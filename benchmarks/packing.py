@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """How much of a layer grains fill."""
 
 from __future__ import annotations

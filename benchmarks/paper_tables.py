@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Tables 1 to 3 and Figure 4 of Barboteu & Dumont (2017), ours beside theirs.
 
 The scripts of inputs/ run with the paper's law (`law moreau`), zero start impulses and criterion (42) at

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Numbers printed in the paper, to stand beside ours.
 
 Source: M. Barboteu and S. Dumont, "A primal-dual active set method for solving multi-rigid-body dynamic

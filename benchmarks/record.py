@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Results of a benchmark: rows of a CSV file that say where they come from, and tables on the screen."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What could be left out of a step: contacts without impulse, grains at rest, islands that could sleep.
 
 A bed settles under law gap. At times are printed: the share of contacts that end without impulse, of grains slower

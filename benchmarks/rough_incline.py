@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """How fast grains flow down a rough incline, over the step: laws gap and moreau, and springs.
 
 1200 grains of 0.9 to 1.1 mm, friction 0.5, in 12 layers on a base of fixed grains, 10 by 10 mm with periodic sides,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Positions, velocities and spins of a LAMMPS scene, kept to start again from."""
 
 from __future__ import annotations

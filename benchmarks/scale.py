@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a grain costs on one rank, from 1000 to 1,000,000: time, memory, and the order of grains in memory.
 
 A slab of 1000 grains, periodic in x and y, settles once; LAMMPS' ``replicate`` makes it wide. Depth, contacts a grain

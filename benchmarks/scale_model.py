@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a step costs at 1e9 grains on 1e5 cores: a model with constants that scale.py, scale_ranks.py and
 scale_sweeps.py have measured, and a network that is assumed.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Two ranks against one, and what ranks send each other: slabs of scale.py, a fixed number of iterations.
 
 speed    wall time of a step and of an iteration, the best of the repeats; ways to run take turns:

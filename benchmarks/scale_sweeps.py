@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Iterations to a tolerance against the size of a bed: its height, its width, and the number of ranks.
 
 Beds of grains periodic in x and y, frictionless, settled under law gap; one step of 5e-4 s to criterion (42) below 1e-7

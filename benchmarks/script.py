@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The scripts of inputs/, run in this process and measured."""
 
 from __future__ import annotations

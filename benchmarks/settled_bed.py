@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Settled beds, kept in files from one benchmark to the next."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Settled slabs of grains, periodic in x and y: cells settled once, made wide by LAMMPS' ``replicate``."""
 
 from __future__ import annotations

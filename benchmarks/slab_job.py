@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What is measured on slabs, in processes of their own: started by `measure`, run by ``python slab_job.py JOB``.
 
 A job is a dict of plain values; so is what comes back, from the first rank.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Solvers against each other: one contact problem to many tolerances, and whole runs.
 
 problems  work against precision: milliseconds of the solver, best of the repeats, against the largest error of the

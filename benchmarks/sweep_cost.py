@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a sweep, a step and a contact cost on settled beds, one thread.
 
 sweep   nanoseconds per contact and iteration of each local law of NLGS and of APGS: solver seconds / sum of contacts x

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 # Eigen, for sparse factorisations: headers alone, from the system or from PyPI's cmeel-eigen, which pyproject.toml asks
 # for. Sets the imported target nscd_eigen.
 find_package(Eigen3 QUIET NO_MODULE)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 # export_only(target symbol): everything else of the target stays local. Both doors contain the core, and functions
 # compiled for several instruction sets are exported whatever their visibility: without this the first build of the
 # core that a process loads would serve the other door too.

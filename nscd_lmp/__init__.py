@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Hard grains in LAMMPS by nonsmooth contact dynamics (NSCD).
 
 Two doors lead to one solver: ``fix nscd`` in LAMMPS input scripts, and :func:`attach` on a live

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The program ``nscd-lmp`` by the name of the package: ``python -m nscd_lmp``."""
 
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What there is to choose from, as the compiled core registers it."""
 
 from dataclasses import dataclass

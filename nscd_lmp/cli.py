@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The program ``nscd-lmp``: one subcommand for every module of :mod:`nscd_lmp.commands`."""
 
 import argparse

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The true largest overlap of a scene, from all pairs of grains and all walls: numpy, and nothing of the package."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Least x m x / 2 + c x over second-order cones |x_t| <= x_0, by a primal-dual interior point method.
 
 Mehrotra's predictor and corrector in Nesterov & Todd's scaling: Vandenberghe (2010), The CVXOPT linear and quadratic

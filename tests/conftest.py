@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Instances of LAMMPS and processes that end with the test that asked for them, and a question behind each run."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Delassus matrices from lever arms, by one dense Jacobian of all contacts."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Contact problems without LAMMPS: random couplings, piles of spheres, and references for them."""
 
 from __future__ import annotations

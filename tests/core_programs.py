@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The programs of tests/core: built by CMake, run with words."""
 
 from __future__ import annotations

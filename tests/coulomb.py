@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A reference for contact problems with Coulomb friction, which shares no code and no method with the package.
 
 Given the Delassus matrix W, the velocities q without impulses and a coefficient mu of each contact, find p with

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The formulas of docs/friction.md for one contact, in numpy: laws, generalised Newton matrices, closed-form visits.
 
 Vectors are in the basis (n, t1, t2), and v = v_free + W p with W = diag(W_nn, W_tt, W_tt), given as its diagonal w.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Runs for test_debian_lammps.py, in the test process and, as a script, in the Python of Debian's LAMMPS.
 
 ``python debian_scene.py CASE DOOR FOLDER`` writes what the case leaves into the folder. Commands are kept to

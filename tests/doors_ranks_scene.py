@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Runs for test_doors_ranks.py: ``mpiexec -n P python doors_ranks_scene.py DOOR ANSWERS`` leaves what ranks say."""
 
 from __future__ import annotations

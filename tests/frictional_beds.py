@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Beds of grains with friction that settled under their weight, in space and in the plane, and a step of them."""
 
 from __future__ import annotations

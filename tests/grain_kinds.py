@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Kinds of grains that friction turns, and in what frame: spheres, discs, and spheres in a planar scene.
 
 kappa = 1 + k is the tangential share of a contact, W_tt / W_nn, with k = m r^2 / I: 7/2 for spheres, 3 for discs.

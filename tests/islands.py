@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Small scenes that go side by side into one box and never touch: what happens to one may not depend on the others."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Two balls of radius 0.5 that meet, in scenes that LAMMPS commands make awkward."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The pages of the documentation and the code blocks on them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Processes that tests start: none outlives its test, nor pytest, however these end.
 
 All that descends from pytest carries a mark in its environment, and is found by it in /proc. Run as a program, this

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Random scenes on several ranks, for test_random_properties.py: ``mpiexec -n P python random_ranks.py ANSWERS``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Runs of random scenes, and what no step of them may break."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Random scenes for test_random_properties.py: what hypothesis draws, and the LAMMPS object that it means."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The grains that test_ranks.py starts from, made on one rank."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Runs for test_ranks.py on several ranks: ``mpiexec -n P python ranks_scene.py CASE[,CASE...] BEDS ANSWERS``.
 
 Every case starts from grains that lie in a file, takes some steps and leaves what all ranks have together, by tag.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes that the physics tests share: grains in a LAMMPS instance, ready for either door."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What the tests of sweeps run: a script, functions, and as a program a sweep to be ended, ``sweep_cases.py RANKS``."""
 
 from __future__ import annotations

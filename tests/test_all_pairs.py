@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The check that every run is asked: closed forms, and its two ways against each other."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The atlas: maps, rules, tables, pictures and command; what single cells show is in test_atlas_maps.py."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Cells of the atlas whose numbers or outcomes are known."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Trajectories between impacts: exactness, order in dt, and the sum of bounces that Zeno's ball makes."""
 
 from __future__ import annotations

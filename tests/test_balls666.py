@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """SimBenchmark's "666 balls": 6 x 6 x 6 spheres that fall on a floor and spread, the field's accuracy test.
 
 Radius 0.1 m, mass 10 kg, spacing 0.21 m plus a random 0 to 1 mm, frictionless, dt 1e-3 s, T = 10 s.

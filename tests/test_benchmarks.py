@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Each benchmark runs and writes what it promises; what it measures is no test."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Fixes, settings and grains that change after the contact fix was made, through both doors."""
 
 from __future__ import annotations

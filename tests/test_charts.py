@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Charts: methods of both families on one ball, penalty springs, Pareto fronts, series, pictures and the command."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes of the charts with many grains: their starts, their errors, and who wins where it is known."""
 
 from __future__ import annotations

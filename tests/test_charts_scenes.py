@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Charts with closed forms: rigid contacts err as their scheme does, penalty contacts less with more stiffness."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The program nscd-lmp: what it prints, what it writes and its exit codes."""
 
 import os

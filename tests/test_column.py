@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A column of grains, the worst case of Gauss-Seidel and one with closed forms for everything."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """`nscd_lmp.solve` on problems without LAMMPS: every solver against other methods, and what is refused."""
 
 from __future__ import annotations

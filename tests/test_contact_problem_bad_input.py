@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What `nscd_lmp.ContactProblem` and `nscd_lmp.solve` refuse, and that they say where and why."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The core's own tests (tests/core: C++, no Python, no LAMMPS), one test here for each one there.
 
 They run under the address and undefined behavior sanitizers, which stop a program at the first fault, those of threads

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The reference of the frictional tests, coulomb.py, on problems that can be solved by hand or by trying all cases."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The Python door on Debian's LAMMPS: a build of 2021 with package PYTHON and OpenMPI, no C++ exceptions.
 
 The package is built for the system's Python and runs there by ``fix external`` and ``fix python/invoke``.

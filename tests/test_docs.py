@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Every code block of README.md and docs/ runs: a page's blocks in their order, in one empty folder.
 
 ``python`` blocks run as scripts, ``bash`` blocks under ``bash -eu``, ``lammps`` blocks as input of ``lmp``; those in

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The two doors: the same bits, the same habits, and what each hands out."""
 
 from __future__ import annotations

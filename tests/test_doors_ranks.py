@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What is refused and told of scenes is the same on all of several ranks."""
 
 from __future__ import annotations

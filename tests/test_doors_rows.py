@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Rows of contacts: fresh wherever they are read, whole, in the units of LAMMPS, and kept."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes of LAMMPS that are not what grains and contacts make of them: right, or refused, through both doors."""
 
 from __future__ import annotations

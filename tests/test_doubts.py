@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What the doors say of scenes made from arrays that are likely not what was meant, before their first step."""
 
 from __future__ import annotations

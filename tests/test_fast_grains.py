@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Grains that an impulse makes many times as fast as any was: they pass nothing, and nothing is hidden."""
 
 from __future__ import annotations

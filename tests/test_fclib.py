@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Files of FCLIB: what is written is what its C library reads, and what that writes is read."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What `fix nscd` gives to thermo output, variables, dumps and scripts, in-process and in plain `lmp -in`."""
 
 from __future__ import annotations

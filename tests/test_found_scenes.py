@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes that random search found, cut down to what mattered."""
 
 from __future__ import annotations

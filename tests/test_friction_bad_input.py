@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Input with friction that cannot be right is refused through both doors with value and remedy; nothing is lost."""
 
 from __future__ import annotations

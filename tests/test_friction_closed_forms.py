@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """One grain on a plane with friction: sliding into rolling, inclines, the walls' own coefficients.
 
 Spins are given as surface speeds r omega, counted positive where they roll forward.

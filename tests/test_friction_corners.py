@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Corners of friction that once went wrong: no friction in a frictional scene, small grains, two fixes at once."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The two doors with friction: the same bits in x, v, omega, f, torque and contacts; what each says and hands out."""
 
 from __future__ import annotations

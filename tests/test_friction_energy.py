@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Friction and impacts take energy and never make any: translation, rotation and height together.
 
 The theory is in docs/friction.md, "Energy": with e = e_t Newton's law takes energy; with e != e_t it may make some when

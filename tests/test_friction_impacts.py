@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Oblique impacts with friction, of grains on a wall and of two grains: stick or slip, angles, spins, momenta."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Grains with several contacts with friction at once: corners, piles, rollers and belts.
 
 Places and velocities are given in a plane of their own, along the ground and above it; spins as surface speeds r omega,

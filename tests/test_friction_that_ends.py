@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Steps with friction that have no single answer: what sweeps return, what ends a step, and what is said of it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Dense beds with friction: all solvers against a reference that takes all contacts at once."""
 
 from __future__ import annotations

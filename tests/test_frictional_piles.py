@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Piles, blocks and pairs with friction: rest, sliding without lift, more than one solution, and the warm start."""
 
 from __future__ import annotations

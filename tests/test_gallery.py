@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Every picture of the pages has a command, the commands are there, and the script that makes them anew works."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Grains whose radii change: growth is part of a contact's velocity, a jump is not. Both doors, both laws."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Every input script runs, shortened, under a plain `lmp -in`."""
 
 from __future__ import annotations

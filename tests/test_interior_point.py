@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The interior point solver from Python: what it is for, and what it says where it fails."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What no scene may break: momentum, energy, symmetry of pairs, and the same bits for the same input."""
 
 from __future__ import annotations

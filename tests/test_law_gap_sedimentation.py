@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The paper's sedimentation (5.2) under law gap: hard grains at four times the paper's time step."""
 
 from __future__ import annotations

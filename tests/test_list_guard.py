@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Neighbor lists that are as short as pairs need: no contact is missed, and none is missed where there is none."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What happens to grains does not depend on grains that they are not connected to."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Grains that were disturbed by others far away: what they do now is what they do alone."""
 
 from __future__ import annotations

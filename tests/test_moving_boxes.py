@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Boxes that move: an image moves with its box, and grains that the box carries have that motion too.
 
 True overlaps come from all pairs of a dump, which LAMMPS writes after the box has moved.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Obstacles that move are met where they are, at the speed that they have."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The formulas of docs/friction.md hold: Newton matrices, closed-form visits, what repeated visits of one contact do.
 
 Nothing compiled is used: these are tests of the derivation. That the compiled laws do the same is for tests/core/.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """One contact, where every solver and law has a closed form to meet.
 
 The balls are boulders (r = 0.5 m, 1309 kg). Criterion (42) weighs a contact that is pressed although it

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The plugin in a LAMMPS of another release: refused with a clear text; LAMMPS goes on without fix nscd."""
 
 from __future__ import annotations

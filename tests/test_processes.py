@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What tests start ends with them: the checks of `processes` find what is left behind, and end it."""
 
 from __future__ import annotations

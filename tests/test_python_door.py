@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What `attach` hands out, and what a solver written in Python is handed."""
 
 from __future__ import annotations

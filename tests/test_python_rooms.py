@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The rooms of the Python package: imports point down, run in no circle, and none goes to the package itself."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """All solvers on the problems of dense beds, against the same quadratic program solved by other means."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Random scenes: what no step of any of them may break.
 
 CI runs the same few scenes each time. `NSCD_PROPERTY_MINUTES=30 pytest tests/test_random_properties.py` shares so much

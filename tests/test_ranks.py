@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Several MPI ranks: any number gives the one-rank velocities, the same number the same bits, and one failure ends all.
 
 One-rank answers are those of the same program on one rank, whose physics the other tests show.

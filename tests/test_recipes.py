@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The C++ listings of the documentation: built into the core's tests, which ask of them what they ask of every other.
 
 A block in ``cpp`` is a whole file, that which the text above it names last. Others have ``<!-- not built: reason -->``.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What the end of a run tells of steps that were taken and are not what they may be taken for, by both doors."""
 
 from __future__ import annotations

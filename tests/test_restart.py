@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Restart files keep the warm start, a killed run goes on from its last one, and loads are balanced while it runs."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Rooms of the core: includes point down, every file is in a room, and every room says what it is for.
 
 Which room is on which floor is read from the table of ``nscd_lmp/core/README.md``.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Rows of light balls between heavy ones that have met, e = 0, and fly on as one: there is nothing left to solve."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """nscd_lmp.scene: the grains that were meant, in lists that reach far enough."""
 
 from __future__ import annotations

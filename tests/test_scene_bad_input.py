@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What nscd_lmp.scene refuses: value, limit and remedy, and no instance is left."""
 
 from __future__ import annotations

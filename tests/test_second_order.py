@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Law gap at large steps: second order for contacts that last, exact for impacts that meet one after another."""
 
 from __future__ import annotations

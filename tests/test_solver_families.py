@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Every solver on every family of problems, against references that share no method with it; what fails must say so.
 
 Velocities are compared, not impulses, which are not unique where W is rank-deficient.

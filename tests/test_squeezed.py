@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A layer that is squeezed until nothing can give way: no grain is thrown, and the message says what is the matter."""
 
 from __future__ import annotations

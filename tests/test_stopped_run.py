@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Runs that cannot go on stop with their reason, keep the last good step, and leave LAMMPS usable."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Lint, format and types: what `ruff check`, `ruff format --check` and `mypy` say."""
 
 from __future__ import annotations

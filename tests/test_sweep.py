@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Sweeps: the table and the files that come of scripts and functions, and the command."""
 
 from __future__ import annotations

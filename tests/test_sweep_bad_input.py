@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Sweeps: what is refused, with value, limit and remedy, and what is warned of."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Cases that fail, and sweeps that are ended and go on."""
 
 from __future__ import annotations

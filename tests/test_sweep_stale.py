@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Sweeps whose code has changed: finished results are neither lost nor mixed with others."""
 
 from __future__ import annotations

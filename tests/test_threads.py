@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Threads of a rank in both doors; their parts and races are in tests/core/test_threads.cpp."""
 
 from __future__ import annotations

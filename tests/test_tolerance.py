@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What `tol` means: a number keeps the unit of its criterion, whether it is the default or is given."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """After every run of a LAMMPS object in the tests: is the overlap that was reported the true one of all pairs?
 
 `install` puts the question behind LAMMPS' own methods, so a test need not know of it.

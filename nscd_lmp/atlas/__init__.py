@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Where each method fails: maps over the two parameters that break it."""
 
 from nscd_lmp.atlas.atlas import find_maps, make

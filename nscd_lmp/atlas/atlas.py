@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Maps found, run by the sweep, written as tables and drawn."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Pictures of a map: a cell for every pair of parameters, one colour an outcome."""
 
 from __future__ import annotations

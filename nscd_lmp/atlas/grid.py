@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The two parameters of a map, and the cells that they make."""
 
 from __future__ import annotations

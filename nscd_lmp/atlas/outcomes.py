@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What can become of a run, and the rules that decide it: the one place for both."""
 
 from __future__ import annotations

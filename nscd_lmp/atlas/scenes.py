@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Small scenes in LAMMPS instances of their own: columns, piles, clusters, boxes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """One run of a scene, watched from outside: overlaps and energies from positions, and all that the software says."""
 
 from __future__ import annotations

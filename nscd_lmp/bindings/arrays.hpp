@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // numpy arrays that own their memory.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The Python door: a whole step inside `fix external` or `fix python/invoke`, on LAMMPS' own arrays.
 #pragma once
 

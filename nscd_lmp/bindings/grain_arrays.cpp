@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "grain_arrays.hpp"
 
 #include "scene/state.hpp"

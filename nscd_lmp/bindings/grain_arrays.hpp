@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A contact problem of grains, made from arrays instead of a step.
 #pragma once
 

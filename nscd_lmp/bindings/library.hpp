@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // LAMMPS' C interface by function address, so that any LAMMPS library will do: the one that the user loaded.
 #pragma once
 

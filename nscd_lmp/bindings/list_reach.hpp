@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // How far the neighbor list of a LAMMPS reaches whose C interface does not tell the cutoffs of pairs of types.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // nscd_lmp._core: the core for Python.
 #include "arrays.hpp"
 #include "base/error.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Contact problems without LAMMPS, for nscd_lmp.solve.
 #pragma once
 

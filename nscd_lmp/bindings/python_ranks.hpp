@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The ranks of a LAMMPS run, by a Python object: nscd_lmp.ranks.Ranks on mpi4py.
 #pragma once
 

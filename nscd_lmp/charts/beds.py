@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Loose clouds of grains that fall into boxes, and how charts time and watch them."""
 
 from __future__ import annotations

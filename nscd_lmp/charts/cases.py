@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Lists of cases: methods over time steps, tolerances and stiffnesses."""
 
 from __future__ import annotations

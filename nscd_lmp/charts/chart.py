@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A chart: the runs of a scene by all methods, their table, and the picture."""
 
 from __future__ import annotations

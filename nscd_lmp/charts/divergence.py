@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """How long trajectories of the sedimentation can be compared: runs that are all fine, and what they differ by.
 
 python -m nscd_lmp.charts.divergence FOLDER

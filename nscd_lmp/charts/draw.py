@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The picture of a chart: error against processor seconds per simulated second.
 
 A row of panels an error, a column each for the contact laws and the penalty models. Points are all runs, the line of a

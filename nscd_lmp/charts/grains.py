@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Grains of a scene in a LAMMPS instance, set to the last bit."""
 
 from __future__ import annotations

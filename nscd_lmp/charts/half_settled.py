@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Large sedimentations, looked at for a short time from a state that is half settled."""
 
 from __future__ import annotations

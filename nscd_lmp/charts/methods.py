@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The methods that charts compare: every solver under every contact law, and LAMMPS' penalty models.
 
 A scene makes grains in a LAMMPS instance and calls :func:`start`, which gives them contacts of one kind or the other;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Overlap of spheres from their positions alone, whatever method moved them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Pareto fronts of cost and error, and what they say of one family of methods against another."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """LAMMPS' penalty contacts: springs and dashpots for a wanted restitution, and the time step that they allow.
 
 A linear spring k and dashpot on two grains of effective mass m move as a damped oscillator of frequency w = sqrt(k/m)

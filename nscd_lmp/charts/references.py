@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Converged answers that a chart's cases are compared with, computed once a chart and kept in its folder."""
 
 from __future__ import annotations

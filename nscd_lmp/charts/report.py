@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The table of a chart for the terminal: who is cheapest at which error."""
 
 from __future__ import annotations

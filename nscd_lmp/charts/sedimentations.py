@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Sedimentation of the paper (section 5.2) at any number of grains: what its charts share."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What the lines of a chart are: the runs of each method, methods that do the same in one."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The table at the end of a script."""
 
 from rich.table import Table

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """How far a run is: the numbers that fix nscd publishes, and ways to show them while LAMMPS runs."""
 
 import ctypes

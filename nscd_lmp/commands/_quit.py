@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """LAMMPS' command ``quit`` ends the process by C's exit(): what is left to do has to be left with C."""
 
 import ctypes

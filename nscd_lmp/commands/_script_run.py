@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Running a LAMMPS script in this process, watched: a bar meanwhile, a table at the end."""
 
 import os

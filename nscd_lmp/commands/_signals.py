@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Signals that end a command in order: Ctrl-C, and what batch systems send before they kill."""
 
 import signal

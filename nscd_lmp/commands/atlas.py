@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Map where each method fails, over the two parameters that break it.
 
 Each cell of a map is a run of a small scene, and is one of converged, slow,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Draw error against time, for rigid and for penalty contacts.
 
 Runs a scene by every solver under both contact laws, over tolerances and time

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Run the sedimentation of 500 balls and picture the bed.
 
 The scene of Barboteu and Dumont (2017), section 5.2, by contact law gap at time

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Show what is installed: LAMMPS, the two doors to nscd, MPI, solvers and laws."""
 
 import argparse

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Run a LAMMPS script with a progress bar and a closing table.
 
 The script runs in this process as by `lmp -in SCRIPT -var ...`. What LAMMPS

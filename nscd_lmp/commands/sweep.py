@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Run a script or Python function for many values of its variables.
 
 Each case runs in a process and a folder of its own, DIR/NAME=VALUE,...; one

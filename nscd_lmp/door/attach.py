@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The Python door: nonsmooth contact dynamics on a live LAMMPS object.
 
 Needs LAMMPS' C interface alone, so it serves any build that has ``fix external`` (all do). A step is compiled

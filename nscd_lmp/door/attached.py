@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What :func:`nscd_lmp.attach` returns: the statistics and contacts of a running simulation."""
 
 from typing import Any

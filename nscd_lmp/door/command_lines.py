@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """LAMMPS input text as the single commands that LAMMPS makes of it."""
 
 

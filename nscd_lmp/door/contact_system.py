@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The contact problem of one step, as a Python solver is handed it."""
 
 from dataclasses import dataclass

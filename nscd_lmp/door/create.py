@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Grains from arrays, all of them or none, with the masses and radii that were meant."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The step on one LAMMPS instance: its fix, and the watch over the commands that run it."""
 
 import contextlib

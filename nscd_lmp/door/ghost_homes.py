@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Which rank owns the grain of every image: found from the tags, by messages between neighbours.
 
 LAMMPS' C interface does not tell. So every rank asks those whose part of the box an image's place lies in, brought

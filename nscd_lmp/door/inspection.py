@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What LAMMPS does not tell by its C interface but by its ``info`` command."""
 
 import os

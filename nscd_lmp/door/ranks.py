@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The ranks of a LAMMPS run, by mpi4py: what the core needs of them in the Python door."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A scene from arrays: a LAMMPS instance with grains, a box, and neighbor lists that reach far enough."""
 
 from __future__ import annotations

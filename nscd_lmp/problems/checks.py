@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a contact problem must fulfil before the compiled core sees it; every check is one pass over arrays.
 
 scipy is imported where it is used: it would double the time that `import nscd_lmp` takes.

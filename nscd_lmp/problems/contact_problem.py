@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Contact problems without LAMMPS: what :func:`nscd_lmp.solve` takes."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Contact problems in the files of FCLIB, the field's collection: HDF5, group ``fclib_local``.
 
 Source: Acary, Bremond, Koziara & Perignon (2014), FCLIB: a collection of discrete 3D frictional contact problems,

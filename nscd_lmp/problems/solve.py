@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The solver-level door: any contact problem, any solver of the registry, without LAMMPS."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The cases of a sweep: values of variables, and the name of a folder for each."""
 
 from __future__ import annotations

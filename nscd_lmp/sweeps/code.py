@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The code that the results of a function depend on, as far as its own file has it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Results of earlier code: what has changed since, and where they are kept once they are superseded."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A Python function as what the cases of a sweep run, and how a worker finds it again."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Cases side by side, each in a process of its own."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a sweep keeps in files, so that another one can go on where it was ended."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A LAMMPS script as what the cases of a sweep run."""
 
 from __future__ import annotations

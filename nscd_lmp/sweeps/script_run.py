@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A LAMMPS script in a worker: run, and asked for results at its end."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What the text of a LAMMPS script tells before it runs: variables that it uses, files that runs would share."""
 
 from __future__ import annotations

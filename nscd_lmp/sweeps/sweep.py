@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Many runs of one script or function: a grid or list of variables' values, and a table at the end."""
 
 from __future__ import annotations

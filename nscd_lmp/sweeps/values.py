@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Values of variables as words of a command line."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """How far a sweep is: a bar on a terminal, elsewhere a line for each case."""
 
 from __future__ import annotations

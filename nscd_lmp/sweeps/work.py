@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """What a worker does: one case, measured, and its result in a file."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The program of a case's own process: ``python worker.py FOLDER PARENT``, and ``python worker.py FOLDER`` as a rank.
 
 FOLDER has the file case.json, which says what to run; the answer goes to result.json beside it. The process dies with

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The analysis scripts on the import path, and a writer of dump files."""
 
 from __future__ import annotations

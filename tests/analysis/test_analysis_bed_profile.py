@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Packing fractions in closed form."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Contacts of known packings, and of random ones against all pairs and images."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Kinetic energy of falling and spinning balls, also as LAMMPS writes them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Overlaps far below the resolution of float32."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Reading dumps: float64, box origin, order, and errors that name the remedy."""
 
 from __future__ import annotations

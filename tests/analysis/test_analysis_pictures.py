@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The rendering, and each script from its command line to its picture."""
 
 from __future__ import annotations

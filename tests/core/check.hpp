@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // All of the test framework: TEST registers a function, the CHECKs count what is wrong, check.cpp has main.
 #pragma once
 

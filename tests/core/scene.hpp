@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Grains and a pair list made by hand, as LAMMPS would hand them to the core.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The active set method where the plain one ends wrongly or not at all, and what it says where there is no solution.
 #include "check.hpp"
 #include "scene.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What solver auto hands to whom: grains and matrices alike, the same bits every time.
 #include "check.hpp"
 #include "scene.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The table of contacts: whatever adds, drops or reorders rows keeps all arrays beside contacts in step.
 #include "check.hpp"
 #include "scene.hpp"

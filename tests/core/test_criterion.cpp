@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Criterion (42) and the relative residual against values worked out by hand.
 #include "check.hpp"
 #include "problem/criterion.hpp"

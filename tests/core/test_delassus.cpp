@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Delassus matrices of grains, and solvers on them against the same solvers on the bodies.
 #include "check.hpp"
 #include "contact/tangents.hpp"

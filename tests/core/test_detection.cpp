@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Which contacts a step sees, and their normals, gaps and speeds. Law moreau, dt so small that nothing moves,
 // unless a test says otherwise.
 #include "check.hpp"

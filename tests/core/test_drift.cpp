@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What a contact's velocity has besides its bodies': radii that grow, images and grains that move with the box.
 #include "check.hpp"
 #include "scene.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Newton's law of impact with friction can make energy when e != e_t; a step must not.
 #include "check.hpp"
 #include "scene.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Scenes without anything, and scenes with a lot of it.
 #include "check.hpp"
 #include "scene.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Operations on contacts with friction, against formulas with radii and angular velocities, and the conservation laws.
 #include "check.hpp"
 #include "scene.hpp"

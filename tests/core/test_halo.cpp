@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The halo, between ranks that are threads of this program: any number of them gives the velocities of one.
 #include "check.hpp"
 #include "scene.hpp"

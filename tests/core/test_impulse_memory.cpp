@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "check.hpp"
 #include "warm_start/impulse_memory.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Interior points on random problems: against sweeps, against the active set, and where there is nothing to find.
 #include "check.hpp"
 #include "scene.hpp"

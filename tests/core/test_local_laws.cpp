@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Every local law of the registry on one contact, where all can be worked out by hand.
 #include "check.hpp"
 #include "solver/solver.hpp"

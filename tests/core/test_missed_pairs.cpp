@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Pairs that the neighbor list lacks: judged by their own approach, and found where a solve drives them together.
 #include "check.hpp"
 #include "scene.hpp"

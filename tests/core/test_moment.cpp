@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The plane of a pair that has moved on (core/contact/moment.hpp).
 #include "check.hpp"
 #include "contact/moment.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Law moreau on scenes small enough to be worked out by hand.
 #include "check.hpp"
 #include "scene.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // One contact with friction, where the solution is known in closed form: every law of the registry on thousands of
 // random problems.
 #include "check.hpp"

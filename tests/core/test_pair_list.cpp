@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What must hold of the neighbor list: no contact missed, none counted twice.
 #include "check.hpp"
 #include "scene.hpp"

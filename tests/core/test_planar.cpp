@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Planar scenes (`dimension 2`), spins in and out of the arrays, and obstacles that drive grains.
 #include "check.hpp"
 #include "scene.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Random crowded scenes for every law and solver: whatever comes, a step either keeps what it promises or
 // refuses and leaves the arrays alone. Most of its worth is under sanitizers.
 #include "check.hpp"

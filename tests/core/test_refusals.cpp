@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What a step refuses, and that nothing is lost then: the arrays stay as they are, and a repaired scene goes on.
 #include "check.hpp"
 #include "scene.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The two stopping rules of a step: criterion (42) in m/s, and the natural map relative to the free velocities.
 #include "check.hpp"
 #include "scene.hpp"

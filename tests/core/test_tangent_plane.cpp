@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Tangential impulses in space stay perpendicular to their normals, however long a law takes.
 #include "check.hpp"
 #include "scene.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Threads of a rank: parts that are swept at the same time share no body, and any number of threads gives the
 // velocities of one. Worth most under the thread sanitizer.
 #include "check.hpp"

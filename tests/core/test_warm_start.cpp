@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Warm start under friction: impulses turn with their contact, whichever grain is named first.
 #include "check.hpp"
 #include "scene.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Ranks that are threads of one program: what the halo exchanges, without MPI.
 #pragma once
 

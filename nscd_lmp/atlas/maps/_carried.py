@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes of one step whose answer is known: balls carried by friction, columns, a shaken pile."""
 
 from typing import Any

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """How exact a step has to be for a column to stand, by its height."""
 
 from typing import Any

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Friction in piles whose impulses are less and less determined by the motion."""
 
 from typing import Any

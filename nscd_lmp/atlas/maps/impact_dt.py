@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A ball that hits another one, by speed and time step."""
 
 import math

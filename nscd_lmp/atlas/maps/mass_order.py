@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A heavy grain above light ones, below them, and masses in turn."""
 
 from typing import Any

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Grains that overlap at the start, by how much and by what law gap gives back."""
 
 from typing import Any

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Beds of grains whose sizes differ by up to 1:20."""
 
 from functools import cache

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The four laws that have a rho, on a heavy ball that three light ones carry by friction."""
 
 from typing import Any

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """LAMMPS' penalty contacts, by stiffness and time step."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Energy of bouncing balls under law moreau, by theta and restitution."""
 
 from typing import Any

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """The scenes of the charts, a module each.
 
 A scene has ORDER (its place in lists), TITLE, ERRORS (result column -> label of its axis), NOTES (what the errors mean

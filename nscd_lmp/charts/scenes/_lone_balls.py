@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Many balls on a floor, so far apart that each is a scene of its own: one ball alone is too quick to time."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """SimBenchmark's 666 balls, inelastic."""
 
 from __future__ import annotations

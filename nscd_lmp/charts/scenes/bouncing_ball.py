@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A ball bounces until it rests."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A column of grains with friction, released at once."""
 
 from __future__ import annotations

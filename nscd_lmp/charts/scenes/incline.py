@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Balls that fall on an inclined plane, section 5.3 of the paper."""
 
 from __future__ import annotations

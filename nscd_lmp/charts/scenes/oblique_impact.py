@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Balls hit a wall at all angles."""
 
 from __future__ import annotations

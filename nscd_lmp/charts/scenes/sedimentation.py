@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Sedimentation of 500 grains, section 5.2 of the paper."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Sedimentation of 10,000 grains."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Sedimentation of 100,000 grains, over a short window."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """A settled bed that should stay as it is."""
 
 from __future__ import annotations

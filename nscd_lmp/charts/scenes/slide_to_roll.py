@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Balls thrown along a floor slide until they roll."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 """Balls with back spin slide to a stop."""
 
 from __future__ import annotations

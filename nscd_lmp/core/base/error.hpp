@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // One exception type for everything the core refuses. Messages name the value, the limit and the remedy.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A list of named entries that files add themselves to while the library is loaded.
 #pragma once
 

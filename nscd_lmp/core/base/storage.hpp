@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Memory of the core: a vector on cache lines, and vectors that grow closely.
 //
 // std::vector places Vec4 by the alignment that the baseline instruction set asks for (16 B), which is too little where

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The velocities that EBP and EAL carry from visit to visit under friction, in a solver's workspace.
 // Solvers with momentum keep the impulses of the sweep before in the same layout.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The data that a sweep touches, laid out for it.
 //
 // A sweep visits contacts one after another and is bound by latency, not by arithmetic. Hence:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Vectors of one contact along N, T1[, T2], as local laws take them, for problems posed by a Delassus matrix.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What a contact has beside its normal direction where there is friction: tangential velocity and impulse, spins.
 //
 // A scene is frictionless (one unknown per contact, no spins), planar (two) or spatial (three); chosen once, when

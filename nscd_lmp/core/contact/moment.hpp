@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // When a contact's impulse acts within the step, and how the pair lies then.
 //
 // An impulse p n that acts t after the start of the step, between centres that are s apart and part with w, changes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Frames at contacts, for whoever wants components: custom solvers, Delassus matrices.
 #pragma once
 

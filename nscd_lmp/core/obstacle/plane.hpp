@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A plane wall: the half-space behind it is solid.
 #pragma once
 

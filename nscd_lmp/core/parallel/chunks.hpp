@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Work on many things of one kind, a chunk a thread.
 #pragma once
 

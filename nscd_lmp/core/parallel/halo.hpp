@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Grains that several ranks know: who has copies of whose, and how their contacts act together.
 //
 // A contact is solved by one rank, which has a copy of the other rank's grain: a body of its own, with an index behind

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The messages of the halo: numbers of bodies, packed in the order that both sides have them in.
 #pragma once
 

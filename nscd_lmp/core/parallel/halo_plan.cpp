@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Who has copies of whose grains, and which of them are shared.
 #include "parallel/halo.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Contacts in an order in which threads can sweep them.
 //
 // The scene is cut into slabs across its longest side, one a thread, and a body belongs to one of them. Contacts are

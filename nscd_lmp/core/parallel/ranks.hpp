@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What the core needs of the other ranks. The doors implement it; the core knows no MPI.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "parallel/team.hpp"
 
 #include "parallel/ranks.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Threads of one rank that work on a solve together.
 //
 // They spin for a moment when they have nothing to do, since a sweep is short, and then sleep: outside of solves they

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A sparse matrix of small dense blocks by rows: a Delassus matrix, contact by contact.
 #pragma once
 

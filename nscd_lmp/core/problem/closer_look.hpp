@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Contacts judged one by one and island by island, by what each has at stake.
 //
 // A sum over a scene says nothing of a contact in it: where forces of 1 N and of 1e5 N act side by side, the small

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The stopping criterion of Barboteu & Dumont (2017), equation (42), and a relative residual beside it.
 //
 //   eps_glob = 1/N_c sum_c [ eps_motion + eps_bc + eps_pen ]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The Delassus matrix of grains, W = H^T M^-1 H, and what else solvers of all contacts at once are handed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The contact problem of all contacts at once, by its Delassus matrix: find p with u = W p + q and
 //   0 <= u_n _|_ p_n >= 0,  |p_t| <= mu p_n,  p_t = -mu p_n u_t / |u_t| where u_t != 0.
 //

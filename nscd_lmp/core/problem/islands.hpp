@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Islands: grains that are connected through contacts that push. What happens in one has nothing to do with another, so
 // whatever is judged or corrected is judged or corrected island by island, never over the whole scene.
 // On several ranks all islands that reach across ranks count as one.

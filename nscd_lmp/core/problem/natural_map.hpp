@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The natural map of a contact, in velocities: 0 where its law holds.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The velocity-level contact problem of one step, equation (17): what every solver is handed.
 #pragma once
 

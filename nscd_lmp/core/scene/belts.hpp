@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // How obstacles that have a velocity move in a step: by what they have moved since they were seen last, which need not
 // be the velocity that their atoms show (of the end of the step, of half a step, or of a belt, which does not move at
 // all). Where grains move by the mean of their velocities, as under law moreau, the velocity at the end of the step is

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Bonded grains, whose pairs LAMMPS leaves out of the neighbor list unless it is told not to.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // How the box moves, from what it was in the steps before.
 #pragma once
 

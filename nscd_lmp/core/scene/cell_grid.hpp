@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Points in space sorted into cells, to find those near a place. Cells are hashed, so points may lie at any distance.
 #pragma once
 

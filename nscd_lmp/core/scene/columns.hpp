@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A table whose columns are arrays of their own: one place that makes them longer or shorter and lets rows change
 // places. A column is open, and then has an entry for each row, or closed, and then has none.
 #pragma once

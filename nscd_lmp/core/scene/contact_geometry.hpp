@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // From a pair of atoms, or an atom and a wall, to a contact: gap, normal, bodies, W_nn.
 #pragma once
 

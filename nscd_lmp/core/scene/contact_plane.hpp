@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The plane of one contact, and where the courses of its two bodies come from (moment.hpp).
 #pragma once
 

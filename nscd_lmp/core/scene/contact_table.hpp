@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The contacts of a step, with all that lies beside them. A new array beside contacts is a line here, and nothing else
 // has to know that it grows and is put in order with the others.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Grains of other ranks as this one has them: their bodies and, from their owners, how they move and where they are.
 // Of all of these a scene on one rank needs none.
 #pragma once

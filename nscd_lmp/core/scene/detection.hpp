@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Contact detection: from the neighbor list and the walls to the contact set S of the step.
 #pragma once
 

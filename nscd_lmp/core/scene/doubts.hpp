@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What of a scene that has taken no step yet is likely to be a mistake; told once, and nothing is refused.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What a contact's velocity has besides the velocities of its two bodies: radii that grow, and images (or grains) that
 // move with the box. It is known at the start of a step, and every law takes it as part of the relative velocity.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Where atoms have got to, by their bodies and by their drift.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // From the arrays that a step is handed to its bodies: free velocities, predicted centres, free spins.
 #pragma once
 

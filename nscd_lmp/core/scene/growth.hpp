@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // How fast radii grow, from what they were in the steps before.
 #pragma once
 

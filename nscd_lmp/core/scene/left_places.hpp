@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Whether grains are still where the last step left them: what else moves them integrates them a second time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Whether a neighbor list that has just been built holds all pairs that it should, counted without it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What must hold of the neighbor list, so that no contact is missed and none is counted twice.
 #pragma once
 

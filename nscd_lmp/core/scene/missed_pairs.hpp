@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Pairs that can meet although the neighbor list lacks them, found among all atoms of this rank.
 //
 // A pair that is not listed was farther apart than the list's cutoff when it was built. Most steps need not look for

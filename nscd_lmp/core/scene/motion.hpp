@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What grains do in a step, or can do, as far as pairs are concerned that the neighbor list may lack.
 #pragma once
 

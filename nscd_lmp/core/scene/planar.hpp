@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Planar scenes, `dimension 2`: what must lie in the plane.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "scene/slabs.hpp"
 
 #include "scene/contact_geometry.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Which slab of the scene each body is in, and contacts in the order of parts that threads sweep (parallel/parts.hpp).
 #pragma once
 

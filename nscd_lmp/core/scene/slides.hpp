@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The tangential side of a step's contacts, over the whole state.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Spins of grains: LAMMPS' angular velocities in and out, as surface velocities s = r omega between.
 #pragma once
 

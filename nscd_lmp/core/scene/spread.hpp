@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // How much displacements of grains differ: two of them come nearer to each other by no more than that.
 #pragma once
 

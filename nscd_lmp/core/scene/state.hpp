@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Everything one step works on: the arrays it was handed, and its own, kept from step to step.
 #pragma once
 

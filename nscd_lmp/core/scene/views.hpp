@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The arrays that the core is handed each step. It owns none of them and knows nothing of where they come from.
 #pragma once
 

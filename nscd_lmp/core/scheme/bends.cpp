@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "scheme/bends.hpp"
 
 #include "scene/contact_plane.hpp"

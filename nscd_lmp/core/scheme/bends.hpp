@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The courses of grains through a step with impacts: straight between impacts, each of which acts when its pair meets.
 //
 // So that no impact bends a course earlier than one that was found before it, a round takes of the meetings of every

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // How grains move under law gap, once their velocities are known.
 //
 // dt v_{k+1} is what the gap constraint is about, but it is only first order in free flight and loses energy in

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // law gap: contact at the level of the gap (Stewart & Trinkle 1996; Anitescu & Potra 1997; Anitescu 2006).
 //
 //   S   = { pairs within reach, gap(q_k) < dt (speed_i + speed_j), that free motion brings near (detection.cpp), and

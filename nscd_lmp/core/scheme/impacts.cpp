@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "scheme/impacts.hpp"
 
 #include "scene/drift_of.hpp"

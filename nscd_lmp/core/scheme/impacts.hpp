@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Impacts with restitution under law gap, resolved one after another within the step.
 //
 // Newton's law with the velocities at the start of a step (21) cannot serve here: a contact that is separating then,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // law moreau: the paper's scheme (Barboteu & Dumont 2017, section 3; Moreau 1988; Jean 1999).
 //
 //   q_m     = q_k + (1 - theta) dt v_k                       (18), theta = 1/2

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The scheme of time stepping, which users choose with `law`: where contacts are sought, what velocity they must
 // respect, and how grains move. One file each; they register themselves as solvers do.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // fix nscd's keywords: from words to Settings.
 #include "base/error.hpp"
 #include "settings/settings.hpp"

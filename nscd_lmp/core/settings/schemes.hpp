@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The one list of the schemes of time stepping, keyword `law`, and what settings have to know of one.
 //
 // A scheme is a class (scheme/scheme.hpp); its file registers it, and every choice list reads the registry.

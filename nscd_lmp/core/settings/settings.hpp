@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What the user chooses, and the checks on it: one place for both doors.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Iterations of a solver on several ranks, whose threads they use (across_threads.hpp): masses split while it works,
 // corrections put together, sums over all ranks.
 // On one rank nothing of it is left but a test of a pointer.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Iterations of a solver on the threads of a rank. What they sum is put together in one order, so the result is the
 // same to the last bit however the threads are scheduled. On one thread nothing of it is left but a test of a pointer.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The best impulses that sweeps with friction have met, for iterate().
 #pragma once
 

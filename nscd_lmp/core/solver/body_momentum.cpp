@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "solver/body_momentum.hpp"
 
 #include "base/hot.hpp"

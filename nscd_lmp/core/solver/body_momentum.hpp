@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Momentum of bodies under sweeps (momentum.hpp).
 #pragma once
 

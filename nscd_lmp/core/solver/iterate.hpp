@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Sweeps until the criterion is met: the loop that all solvers by sweeps share, on grains and on matrices.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Impulses and what they do, to come back to.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Nonlinear Gauss-Seidel over the rows of a Delassus matrix: what nlgs.hpp does where there are no bodies.
 //
 // Local laws take a contact's own block as diag(W_nn, W_tt[, W_tt]), which is exact for spheres and discs. Where it is

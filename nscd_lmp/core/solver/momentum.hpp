@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Nesterov's momentum over sweeps, restarted where it overshoots: what APGS adds to NLGS (global/apgs.cpp).
 //
 //   y = x_k + beta (x_k - x_{k-1}),  x_{k+1} = sweep(y)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Nonlinear Gauss-Seidel (section 3.2): sweep over the contacts, solve each with the others held, until the
 // criterion is met. The local law is a template argument, so each law gets its own inlined loop; so is the model, so
 // a frictionless sweep knows nothing of friction.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Sweeps of a problem with friction along the normals alone.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What a solver of the contact problem is, and the one list of them.
 //
 // A solver is a function; its file registers it, and every choice list (fix nscd, attach, solve, the command line),

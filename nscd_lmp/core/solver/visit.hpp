@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What a visit of one contact works on, in every sweep.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // How fast contacts may approach in a step that is called solved.
 #pragma once
 

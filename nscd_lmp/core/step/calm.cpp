@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "step/calm.hpp"
 
 #include "scene/drift_of.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Steps that are given up because nothing can give way: grains are not thrown.
 //
 // Where obstacles, a box or growing grains close in on grains that have nowhere to go, no impulses are a solution,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Keeps Newton's law of impact with friction, and frictional solves that were given up, from making energy.
 //
 // With e = e_t on all contacts the law takes energy, always (Leine & van de Wouw 2008): the impulses P and the

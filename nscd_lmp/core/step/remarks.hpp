@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What users are told at the end of a run: of steps that were taken and yet are not what they may be taken for.
 #pragma once
 

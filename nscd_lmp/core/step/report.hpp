@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The tables that users see: the columns of a step's report and the rows of its contacts.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The rounds of a step: solve, see where grains go, and go on with the pairs that are driven together.
 //
 // The contact set grows while the solution drives watched pairs together; that ends, for lack of pairs. Where impacts

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The contact problems of a step: what of the state a solver is handed, and what came of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // One step of the scheme: arrays in, contacts, solver, arrays out. Both doors call this and nothing beneath it.
 #pragma once
 

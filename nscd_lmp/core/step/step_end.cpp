@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The end of a step: what it has done, and back into the arrays.
 #include "base/hot.hpp"
 #include "scene/drifted.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What a step needs of the neighbor list: ahead of the solve, after it, and for the step to come.
 #include "base/error.hpp"
 #include "step/step.hpp"

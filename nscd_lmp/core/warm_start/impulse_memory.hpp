@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Warm start: the impulses of the last step, found again by the contact's key (the pair's tags).
 // An open-addressing table, refilled each step without allocating. Entry: what a contact's impulse is, with a
 // `std::uint64_t key` that is 0 for a free place.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Warm start across ranks: with every new list, impulses go where their contacts may be solved now.
 //
 // A contact is solved by a rank that owns one of its grains, and which of them that is changes with their places. So

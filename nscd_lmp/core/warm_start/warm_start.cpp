@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "warm_start/warm_start.hpp"
 
 #include "base/hot.hpp"

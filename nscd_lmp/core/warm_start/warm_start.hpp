@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Start impulses of a step: those of the last one, where the contact was there, turned with its normal.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What operator new handed out, in this program.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What a step takes from the heap: nothing once it is steady, and no more than 200 bytes per contact.
 #include "check.hpp"
 #include "counted_new.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Prints, for scenes that meet most of what a step does, a hash of all places and velocities after some steps. For
 // changes that are to keep every bit: two builds on one machine must print the same. No test, since processors differ.
 #include "scene.hpp"

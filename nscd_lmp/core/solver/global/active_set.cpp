@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // ACTIVE SET: global primal-dual active set method with sparse LDL^T, for frictionless contacts:
 //
 //   0 <= p_k  perp  v_k = (W p + q)_k >= 0,     W symmetric positive semidefinite, k = 1..n,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // AUTO: sweeps with momentum, and what comes after them where they would take longer than something else.
 //
 // APGS; where it seems to need more sweeps than factorisations cost (columns, mass ratios, last digits of small beds)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The path that interior points follow: iterates x (impulses) and z (velocities with mu |u_t| along N) inside unit
 // cones. The equations are in interior_point.cpp.
 #pragma once

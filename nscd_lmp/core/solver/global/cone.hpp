@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The second-order cone |x_t| <= x_0 in three numbers. Planar contacts leave the last one 0, half lines the last two.
 //
 // Jordan algebra of Lorentz' product x o y = (x . y, x_0 y_t + y_0 x_t), and the scaling of Nesterov and Todd (1997).

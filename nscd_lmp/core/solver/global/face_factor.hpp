@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Sparse LDL^T of S_FF + eps I on a face F (a sorted list of contacts), and its use as a preconditioner on faces near
 // F.
 #pragma once

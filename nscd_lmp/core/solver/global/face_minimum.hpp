@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The minimum of a proximal problem on a face, with bounds left out: (S_AA + eps I) y_A = -b_A + eps z_A.
 //
 // By conjugate gradients preconditioned with the last factor, in about as many iterations as contacts have changed

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // INTERIOR POINT: contacts with friction by a primal-dual interior point method, all at once:
 //
 //   p in K,  z in K*,  p . z = 0,  z = u + mu |u_t| e_n,  u = W p + q      (de Saxce & Feng 1998)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The last digits: undamped Newton steps on the projections of which solutions are fixed points (Alart & Curnier 1991).
 //
 //   open     x = 0                                where x_0 <= rho_n u_0

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Sparse LU of A W + B, with W of contacts scaled to unit cones, A and B one block a contact: Newton's matrices.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 #include "solver/global/on_grains.hpp"
 
 #include "problem/delassus.hpp"

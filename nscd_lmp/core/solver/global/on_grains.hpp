@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Solvers of all contacts at once, on grains: by the Delassus matrix of these.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // The frictionless contact problem as a quadratic program of unit diagonal: least y.S y / 2 + b.y over y >= 0.
 //
 // S = D^-1/2 W D^-1/2, b = D^-1/2 q, y = D^1/2 p, D = diag W: mass ratios of 1e6 leave a matrix of unit diagonal. Rows

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // A contact problem scaled so that Coulomb's cones are all the unit one: p_n = x_0 r / mu, p_t = x_t r, r = W_nn^-1/2.
 //
 // Without friction the half line x_0 >= 0 is left; a contact that no impulse moves (no W_nn > 0) is left out.

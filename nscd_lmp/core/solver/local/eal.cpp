@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // EAL: enhanced augmented Lagrangian, a Newton step a visit on the unknown chi = (p, v~)
 // (Barboteu & Dumont 2017, section 4.1, equation (26); Alart & Curnier 1991; Dumont 2013).
 //

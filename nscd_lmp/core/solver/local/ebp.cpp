@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // EBP: enhanced bipotential, a Newton step a visit on the unknown chi = (p, v~)
 // (Barboteu & Dumont 2017, section 4.2, equations (30)-(36); Dumont 2013).
 //

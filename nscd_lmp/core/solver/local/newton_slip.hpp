@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // What EAL and EBP have in common where a contact slips: the Newton step across the sliding direction.
 #pragma once
 

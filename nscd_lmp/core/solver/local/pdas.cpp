@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // Registers PDAS in NLGS; the law is in pdas.hpp, since APGS (global/apgs.cpp) visits by it too.
 #include "solver/local/pdas.hpp"
 

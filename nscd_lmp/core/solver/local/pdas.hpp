@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // PDAS: primal-dual active set (Barboteu & Dumont 2017, section 4.3, equations (37)-(41)).
 //
 //   tau = p - gamma v~

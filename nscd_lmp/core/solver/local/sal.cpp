@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // SAL: standard augmented Lagrangian, one projected gradient step a visit
 // (Barboteu & Dumont 2017, section 4.1, equations (23)-(25); Alart & Curnier 1991).
 //

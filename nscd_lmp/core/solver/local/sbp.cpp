@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
 // SBP: standard bipotential, one Uzawa step a visit (Barboteu & Dumont 2017, section 4.2; Fortin et al. 2005).
 //
 //   tau = p - rho (v~ + mu |u_t| n),   p <- proj(tau, K_mu),   K_mu = { |p_t| <= mu p_n }
