@@ -62,7 +62,10 @@ class Gap final : public Scheme {
 
 }    // namespace
 
-static const RegisterScheme gap(
-    {20, "gap", "gap", true, [](const Settings &s) { return std::unique_ptr<Scheme>(new Gap(s)); }});
+static const RegisterScheme gap({.order = 20,
+                                 .name = "gap",
+                                 .title = "gap",
+                                 .looks_ahead = true,
+                                 .make = [](const Settings &s) { return std::unique_ptr<Scheme>(new Gap(s)); }});
 
 }    // namespace nscd

@@ -43,7 +43,10 @@ class Moreau final : public Scheme {
 
 }    // namespace
 
-static const RegisterScheme moreau(
-    {10, "moreau", "Moreau-Jean", false, [](const Settings &s) { return std::unique_ptr<Scheme>(new Moreau(s)); }});
+static const RegisterScheme moreau({.order = 10,
+                                    .name = "moreau",
+                                    .title = "Moreau-Jean",
+                                    .looks_ahead = false,
+                                    .make = [](const Settings &s) { return std::unique_ptr<Scheme>(new Moreau(s)); }});
 
 }    // namespace nscd
