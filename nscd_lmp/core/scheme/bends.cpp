@@ -138,6 +138,8 @@ void Bends::look(State &s, const IsImpact &is_impact)
 {
   find_starts(s);
   meetings_.clear();
+  s.table.impact_moment.open();
+  s.table.impact_kick.open();
   for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
     const double before = normal_velocity(s.table.contacts[k], s.motion.bodies.data()) + normal_drift(s, k);
     if (plane_at_end(s, k, before) >= 0) continue;
@@ -145,23 +147,26 @@ void Bends::look(State &s, const IsImpact &is_impact)
     if (!moment) continue;
     const double u = normal_velocity(s.table.contacts[k], s.motion.bodies.data()) + normal_drift(s, k);
     const double kick = kick_until(s, k, *moment);
-    if (is_impact(k, u + kick)) meetings_.push_back({k, *moment, kick});
+    if (!is_impact(k, u + kick)) continue;
+    s.table.impact_moment[k] = *moment;
+    s.table.impact_kick[k] = kick;
+    meetings_.push_back(k);
   }
 }
 
-const std::vector<Bends::Meeting> &Bends::first_meetings(State &s)
+const std::vector<std::size_t> &Bends::first_meetings(State &s)
 {
   sooner_.assign(s.motion.bodies.size(), 0);
-  const auto left = [&s](const Meeting &met) { return char(parts_of_step - parts(s, met.moment)); };
-  const auto each = [&](const Meeting &met, auto act) {
-    for (const int body : {s.table.contacts[met.contact].i, s.table.contacts[met.contact].j})
+  const auto left = [&s](std::size_t k) { return char(parts_of_step - parts(s, s.table.impact_moment[k])); };
+  const auto each = [&](std::size_t k, auto act) {
+    for (const int body : {s.table.contacts[k].i, s.table.contacts[k].j})
       if (is_grain(s, body)) act(body);
   };
-  for (const Meeting &met : meetings_) each(met, [&](int b) { sooner_[b] = std::max(sooner_[b], left(met)); });
+  for (const std::size_t k : meetings_) each(k, [&](int b) { sooner_[b] = std::max(sooner_[b], left(k)); });
   if (s.exec.halo) s.exec.halo->spread(sooner_);
-  std::erase_if(meetings_, [&](const Meeting &met) {
+  std::erase_if(meetings_, [&](std::size_t k) {
     bool later = false;
-    each(met, [&](int b) { later |= left(met) < sooner_[b]; });
+    each(k, [&](int b) { later |= left(k) < sooner_[b]; });
     return later;
   });
   return meetings_;

@@ -21,20 +21,16 @@ namespace nscd {
 
 class Bends {
  public:
-  struct Meeting {
-    std::size_t contact;
-    double moment, kick;   // as courses has them
-  };
   // Whether contact k, which meets with u (m/s, negative when closing), is an impact.
   using IsImpact = std::function<bool(std::size_t k, double u)>;
 
   // Starts anew. Bodies have the velocities of the middle of the step.
   void begin(State &state);
-  // Finds the impacts that are to come as bodies move now. Contacts that their planes stop are given the plane of the
-  // moment when they meet, or, if they do not, of the end of the step.
+  // Finds the impacts that are to come as bodies move now, and fills impact_moment and impact_kick of theirs. Contacts
+  // that their planes stop are given the plane of the moment when they meet, or, if they do not, of the end of the step.
   void look(State &state, const IsImpact &is_impact);
   // Of them those that are the first of both their grains, by contact. Collective.
-  const std::vector<Meeting> &first_meetings(State &state);
+  const std::vector<std::size_t> &first_meetings(State &state);
   // These have acted, the impulses of the first `count` contacts. Collective.
   void act(State &state, std::size_t count);
   // Takes back courses that contradict each other. Returns whether there are any, anywhere. Collective.
@@ -55,7 +51,7 @@ class Bends {
   void find_contradictions(State &state);
   void take_back(State &state);
 
-  std::vector<Meeting> meetings_;
+  std::vector<std::size_t> meetings_;   // contacts
   Islands islands_;
   std::vector<Islands::Pair> joined_;
   Parts before_;      // what was straight

@@ -53,15 +53,12 @@ Closing select_closing(State &s, Bends &bends)
   bends.look(s, [&](std::size_t k, double u) {
     return u < -resting_kicks * s.table.infos[k].kick - tolerances * tolerance(s.scales, worth(s.table.infos[k]));
   });
-  s.table.impact_moment.open();
-  s.table.impact_kick.open();
-  for (const Bends::Meeting &met : bends.first_meetings(s)) {
-    s.table.swap(met.contact, closing);
+  for (const std::size_t k : bends.first_meetings(s)) {
+    s.table.swap(k, closing);
     const double u = normal_velocity(s.table.contacts[closing], s.motion.bodies.data()) + normal_drift(s, closing);
     energy += 0.5 * s.table.contacts[closing].w_inverse * u * u;
-    s.table.impact_moment[closing] = met.moment;
-    s.table.impact_kick[closing] = met.kick;
-    bias_impact(s, closing++, u, met.kick);
+    bias_impact(s, closing, u, s.table.impact_kick[closing]);
+    ++closing;
   }
   double sums[] = {double(closing), energy};
   if (s.exec.halo) {
