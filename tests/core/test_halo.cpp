@@ -2,6 +2,7 @@
 // The halo, between ranks that are threads of this program: any number of them gives the velocities of one.
 #include "check.hpp"
 #include "scene.hpp"
+#include "settings/schemes.hpp"
 #include "thread_ranks.hpp"
 
 #include <cmath>
@@ -72,7 +73,7 @@ TEST(any_number_of_ranks_gives_the_velocities_of_one)
 // its mean velocity or by that at the end, which may be chosen by what a solve is off.
 TEST(any_number_of_ranks_gives_the_velocities_and_overlaps_of_one_under_every_law)
 {
-  for (const nscd::LawEntry &law : nscd::laws())
+  for (const nscd::SchemeEntry &law : nscd::schemes())
     check_ranks("criterion paper tol 1e-10 restitution 0.5 solver apgs law " + std::string(law.name), 1e-6);
 }
 

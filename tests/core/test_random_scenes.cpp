@@ -67,14 +67,14 @@ static bool in_cones(const Step &step)
 static double left_over(const nscd::State &s)
 {
   double sum = 0;
-  for (std::size_t k = 0; k < s.contacts.size(); ++k) {
-    const nscd::Contact &c = s.contacts[k];
-    const double v = nscd::normal_velocity(c, s.bodies.data()) + c.bias;
-    const double p = c.impulse - (s.impact_impulse.empty() ? 0 : s.impact_impulse[k]);
+  for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
+    const nscd::Contact &c = s.table.contacts[k];
+    const double v = nscd::normal_velocity(c, s.motion.bodies.data()) + c.bias;
+    const double p = c.impulse - (s.table.impact_impulse.is_open() ? s.table.impact_impulse[k] : 0);
     sum += std::max(0.0, -v);
     if (s.friction.model == nscd::Model::frictionless) sum += std::abs(v * p);
   }
-  return sum / std::max(1.0, double(s.contacts.size())) / (1 + s.settings.restitution);
+  return sum / std::max(1.0, double(s.table.contacts.size())) / (1 + s.in.settings.restitution);
 }
 
 // What holds after any step: finite arrays, no tension in a solved step, the energy that contacts took accounted for.
