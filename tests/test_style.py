@@ -86,7 +86,7 @@ def test_hot_functions_raise_no_errors() -> None:
 
 # Ten values in a row say nothing, and one that is left out moves the others.
 def test_registered_entries_name_their_members() -> None:
-    entry = re.compile(r"\bRegister(?:Solver|Law) \w+\((?:\w+(?:<\w+>)?\()?\s*\{\s*(\S+)")
+    entry = re.compile(r"\bRegister(?:Solver|Scheme) \w+\((?:\w+(?:<\w+>)?\()?\s*\{\s*(\S+)")
     places = [ROOT / folder for folder in ("nscd_lmp", "docs")]
     files = [path for place in places for path in place.rglob("*") if path.suffix in (".cpp", ".md")]
     first = [word for path in files for word in entry.findall(path.read_text())]

@@ -27,7 +27,7 @@ class Bends {
   // Starts anew. Bodies have the velocities of the middle of the step.
   void begin(State &state);
   // Finds the impacts that are to come as bodies move now, and fills impact_moment and impact_kick of theirs. Contacts
-  // that their planes stop are given the plane of the moment when they meet, or, if they do not, of the end of the step.
+  // that their planes stop are given the plane of the moment when they meet, or of the end of the step if they do not.
   void look(State &state, const IsImpact &is_impact);
   // Of them those that are the first of both their grains, by contact. Collective.
   const std::vector<std::size_t> &first_meetings(State &state);
