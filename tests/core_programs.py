@@ -48,5 +48,5 @@ def build(folder: Path, target: str, sanitizers: str, *options: str) -> Program:
     configure += ["-DCMAKE_CXX_FLAGS=-O1 -g1", f"-DNSCD_SANITIZE={sanitizers}"]
     configure += [f"-DPython_EXECUTABLE={sys.executable}", *options]  # that has Eigen's headers, whatever PATH says
     call(configure + (["-G", "Ninja"] if tool("ninja") else []), timeout=60)
-    call([cmake, "--build", str(folder), "--target", target, "--parallel", "2"], timeout=280)
+    call([cmake, "--build", str(folder), "--target", target, "--parallel", "2"], timeout=700)
     return lambda *words: call([str(folder / "tests" / "core" / target), *words], timeout=120)
