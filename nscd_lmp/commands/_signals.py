@@ -12,13 +12,14 @@ from typing import NoReturn
 def signals_heard() -> Iterator[None]:
     """Have SIGINT and SIGTERM raise ``KeyboardInterrupt(number)`` inside the ``with`` block.
 
-    Also in a process that was started with SIGINT ignored, as a script's shell starts what it puts into the
-    background: a run there would be deaf to everything but a kill, which leaves no table and no last commands.
+    What the process was started to ignore stays ignored: a shell has what a script puts into the background ignore
+    SIGINT, so that Ctrl-C ends what is in front. SIGTERM ends a command there, in order.
     """
     if threading.current_thread() is not threading.main_thread():  # Python lets others set no handlers
         yield
         return
-    before = {number: signal.signal(number, _interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
+    heard = [n for n in (signal.SIGINT, signal.SIGTERM) if signal.getsignal(n) is not signal.SIG_IGN]
+    before = {number: signal.signal(number, _interrupt) for number in heard}
     try:
         yield
     finally:
