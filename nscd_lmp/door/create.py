@@ -51,7 +51,8 @@ def create_grains(
     ------
     NscdError
         Neither mass nor density, or both; shapes that do not match; numbers that are not finite, radii, masses or
-        densities that are not above 0; grains that are not inside the box. No grain has been made then.
+        densities that are not above 0; types that are no whole numbers from 1; grains that are not inside the box. No
+        grain has been made then.
     """
     place = np.array(x, dtype=float).reshape(-1, 3)
     n = len(place)
@@ -63,7 +64,7 @@ def create_grains(
     values |= {name: per_grain_rows(name, rates, n, 3) for name, rates in (("v", v), ("omega", omega))}
     check_numbers(place, values)
     values[MASS] = values.pop("mass") if mass is not None else values.pop("density") * (4 / 3 * math.pi) * size**3
-    types = per_grain_rows("type", type, n).astype(int).tolist()
+    types = grain_types(type, n).tolist()
     if lmp.extract_setting("radius_flag") != 1:
         raise NscdError("atoms have no radius: use atom_style sphere")
     comm = lmp.get_mpi_comm() if lmp.extract_setting("world_size") > 1 else None
@@ -90,6 +91,14 @@ def per_grain_rows(name: str, given: ArrayLike, n: int, width: int | None = None
     except ValueError:
         one = "a number" if width is None else f"{width} numbers"
         raise NscdError(f"{name} has the shape {values.shape} for {n} grains: it must be {shape}, or {one}") from None
+
+
+def grain_types(given: ArrayLike, n: int) -> NDArray[np.int32]:
+    """Return the types of grains, (n,); raise for what is no whole number from 1."""
+    types = per_grain_rows("type", given, n)
+    if (types != np.round(types)).any() or (types < 1).any():
+        raise NscdError(f"type = {given!r} must be of whole numbers from 1")
+    return types.astype(np.int32)
 
 
 def check_numbers(x: NDArray[np.float64], values: dict[str, NDArray[np.float64]]) -> None:

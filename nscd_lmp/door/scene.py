@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nscd_lmp._core import NscdError
-from nscd_lmp.door.create import check_numbers, create_grains, per_grain_rows
+from nscd_lmp.door.create import check_numbers, create_grains, grain_types, per_grain_rows
 from nscd_lmp.door.walls import Plane
 
 Array = NDArray[np.float64]
@@ -104,7 +104,7 @@ def scene(
     planar = _is_planar(dimension)
     places = _vectors("x", x, planar)
     n = len(places)
-    rates, sizes, types = _vectors("v", v, planar, n), per_grain_rows("radius", radius, n), _types(type, n)
+    rates, sizes, types = _vectors("v", v, planar, n), per_grain_rows("radius", radius, n), grain_types(type, n)
     check_numbers(places, {"radius": sizes, "v": rates})
     largest, pull = float(sizes.max()), _pull(gravity, planar)
     bounds = _bounds(box, periodic, planar, largest)
@@ -260,13 +260,6 @@ def _binned(x: Array, bounds: Array | None, reach: float) -> bool:
     lengths = np.ptp(x, axis=0) if bounds is None else np.ptp(bounds, axis=1)
     bins = float(np.prod(np.maximum(lengths / (0.5 * reach), 1.0)))
     return len(x) >= FEW and bins < 0.5 * len(x) ** 2
-
-
-def _types(given: ArrayLike, n: int) -> NDArray[np.int32]:
-    types = per_grain_rows("type", given, n)
-    if (types != np.round(types)).any() or (types < 1).any():
-        raise NscdError(f"type = {given!r} must be of whole numbers from 1")
-    return types.astype(np.int32)
 
 
 def _above_0(name: str, value: float, unit: str) -> float:
