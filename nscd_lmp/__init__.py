@@ -15,6 +15,7 @@ from nscd_lmp.door.attach import attach
 from nscd_lmp.door.attached import Attached
 from nscd_lmp.door.contact_system import ContactSystem
 from nscd_lmp.door.create import create_grains
+from nscd_lmp.door.materials import Material
 from nscd_lmp.door.scene import scene
 from nscd_lmp.door.walls import Plane
 from nscd_lmp.problems.contact_problem import ContactProblem
@@ -31,6 +32,7 @@ __all__ = [
     "Attached",
     "ContactProblem",
     "ContactSystem",
+    "Material",
     "NscdError",
     "Plane",
     "Solution",

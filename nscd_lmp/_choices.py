@@ -30,7 +30,26 @@ class Law:
     title: str
 
 
+@dataclass(frozen=True)
+class Keyword:
+    """A keyword of ``fix nscd``: what it takes and what is said of it, as the docs have it.
+
+    `choices` are the words that it takes, if it takes words; `value` is the default as a script gives it, or ``""``
+    where that depends on others; `repeats` whether it may be given several times.
+    """
+
+    name: str
+    kind: str
+    choices: list[str]
+    range: str
+    default: str
+    value: str
+    repeats: bool
+    doc: str
+
+
 SOLVERS: dict[str, Solver] = {row["name"]: Solver(**row) for row in _core.solvers()}
 LOCAL_LAWS: dict[str, Solver] = {name: solver for name, solver in SOLVERS.items() if solver.kind == "local law"}
 FRICTIONAL_SOLVERS: dict[str, Solver] = {name: solver for name, solver in SOLVERS.items() if solver.friction}
+KEYWORDS: dict[str, Keyword] = {row["name"]: Keyword(**row) for row in _core.keywords()}
 LAWS: dict[str, Law] = {row["name"]: Law(**row) for row in _core.laws()}

@@ -85,7 +85,7 @@ def harden(lmp: lammps, door: str = "python", group: str = "all", **options: Any
     if door == "python":
         return nscd_lmp.attach(lmp, group, **options)
     words: list[str] = []
-    walls = options.pop("walls", ())  # last: a `friction` right behind a wall is the wall's own
+    walls = options.pop("walls", ())  # last: what stands right behind a wall is its own
     for keyword, value in options.items():
         if isinstance(value, bool):
             words += [keyword, "yes" if value else "no"]
@@ -93,7 +93,8 @@ def harden(lmp: lammps, door: str = "python", group: str = "all", **options: Any
             words += [keyword, str(value)]
     for wall in walls:
         words += ["wall", "plane", *(repr(float(number)) for number in (*wall.point, *wall.normal))]
-        words += ["friction", str(wall.friction)] if wall.friction is not None else []
+        own = [(part, getattr(wall, part)) for part in ("friction", "restitution", "e_t")]
+        words += [word for part, value in own if value is not None for word in (part, str(value))]
     lmp.command(f"fix nscd {group} nscd {' '.join(words)}")
     return None
 

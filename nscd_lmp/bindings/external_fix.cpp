@@ -21,7 +21,7 @@ ExternalFix::ExternalFix(const Library &library, const std::string &id, int grou
     library_(library),
     id_(id), group_bit_(group_bit),
     ranks_(ranks.is_none() ? nullptr : std::make_unique<PythonRanks>(ranks)), find_homes_(std::move(find_homes)),
-    step_(settings, std::move(custom), setting("dimension"), ranks_.get())
+    step_(settings, std::move(custom), setting("dimension"), ranks_.get(), setting("ntypes"))
 {
 }
 
@@ -184,6 +184,7 @@ std::vector<std::string> ExternalFix::doubts() const
   g.mass = library_.per_atom<double>("rmass");
   g.tag = library_.per_atom<std::int32_t>("id");
   g.mask = library_.per_atom<int>("mask");
+  g.type = library_.per_atom<int>("type");
   g.group = group_bit_;
   const bool spheres = setting("radius_flag") == 1 && setting("rmass_flag") == 1 && setting("tagint") == 4;
   if (timestep() != 0 || !spheres) return {};
@@ -219,6 +220,7 @@ Grains ExternalFix::arrays()
   g.radius = library_.per_atom<double>("radius");
   g.tag = library_.per_atom<std::int32_t>("id");
   g.mask = library_.per_atom<int>("mask");
+  g.type = library_.per_atom<int>("type");
   g.mass = library_.per_atom<double>("rmass");
   if (!g.mass) {
     const double *by_type = library_.per_atom<double>("mass");

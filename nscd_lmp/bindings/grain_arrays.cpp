@@ -40,14 +40,14 @@ Vec4 GrainProblem::tangential(std::size_t k, const double *components) const
 
 GrainProblem::GrainProblem(const GrainArrays &a) :
     arrays_(a), bodies_(a.bodies + obstacle_copies), spins_(bodies_.size()), contacts_(a.contacts),
-    problem_{bodies_, contacts_, 0, norm(a.q, a.contacts * a.dim), workspace_}
+    problem_{bodies_, contacts_, norm(a.q, a.contacts * a.dim), workspace_}
 {
   const Model model = model_of(a.dim);
   for (std::size_t i = 0; i < a.bodies; ++i) bodies_[i] = Body{0, 0, 0, a.inverse_mass[i]};
   std::fill(bodies_.begin() + a.bodies, bodies_.end(), Body{});  // obstacles
   if (model == Model::planar) planar_.resize(a.contacts);
   if (model == Model::spatial) spatial_.resize(a.contacts);
-  problem_.sliding = {model, a.spin_response, 0, model == Model::frictionless ? nullptr : spins_.data(),
+  problem_.sliding = {model, a.spin_response, model == Model::frictionless ? nullptr : spins_.data(),
                       planar_.data(), spatial_.data()};
   for (std::size_t k = 0; k < a.contacts; ++k) {
     const auto obstacle = std::int32_t(a.bodies + k % obstacle_copies);

@@ -5,6 +5,7 @@
 #include "external_fix.hpp"
 #include "problems.hpp"
 #include "scene/slides.hpp"
+#include "settings/keyword.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -152,6 +153,26 @@ nb::list solver_table()
   return table;
 }
 
+// All that is told of a keyword; names of values are the words that it takes.
+nb::list keyword_table()
+{
+  nb::list table;
+  for (const auto &k : nscd::keywords()) {
+    if (k.doc.empty()) continue;   // another spelling
+    nb::dict row;
+    row["name"] = std::string(k.name);
+    row["kind"] = k.value.kind;
+    row["choices"] = k.value.choices ? k.value.choices() : std::vector<std::string>{};
+    row["range"] = k.range.text();
+    row["default"] = nscd::default_of(k);
+    row["value"] = k.otherwise.empty() && k.value.write ? k.value.write({}) : "";
+    row["repeats"] = k.value.repeats;
+    row["doc"] = std::string(k.doc);
+    table.append(row);
+  }
+  return table;
+}
+
 nb::list law_table()
 {
   nb::list table;
@@ -221,6 +242,12 @@ NB_MODULE(_core, m)
   m.def("solvers", &solver_table,
         "Solvers in legend order: name, title, kind, parameter, default (multiple of 1/W_nn), friction.");
   m.def("laws", &law_table, "Contact laws: name, title.");
+  m.def("keywords", &keyword_table,
+        "Keywords of fix nscd, in the order of the docs: name, kind, choices, range, default (as docs have it), value "
+        "(the default as it is read, or empty), repeats, doc.");
+  nb::list parts;
+  for (const auto &part : nscd::material_parts) parts.append(std::string(part.name));
+  m.attr("MATERIAL_PARTS") = parts;
   m.attr("REPORT_COLUMNS") = names(nscd::report_column_names);
   m.attr("TOTALS_COLUMNS") = names(nscd::totals_column_names);
   m.attr("CONTACT_COLUMNS") = names(nscd::contact_column_names);

@@ -37,7 +37,9 @@ Request make_request(const std::string &solver, double tol, int maxiter, int bud
   options.maxiter = maxiter;
   options.budget.sweeps = budget;
   options.parameter = parameter.value_or(entry.default_parameter);
-  options.stop = parse_stop(criterion);
+  Settings settings;
+  parse_keywords(settings, {"criterion", criterion});
+  options.stop = *settings.criterion;
   options.history = &history;
   return {entry, options};
 }

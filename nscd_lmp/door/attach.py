@@ -5,16 +5,18 @@ Needs LAMMPS' C interface alone, so it serves any build that has ``fix external`
 code from end to end; Python is entered only by a Python solver.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nscd_lmp._choices import KEYWORDS
 from nscd_lmp._core import NscdError
 from nscd_lmp.door.attached import Attached
 from nscd_lmp.door.contact_system import ContactSystem
 from nscd_lmp.door.door import Door
+from nscd_lmp.door.materials import Material, material_words
 from nscd_lmp.door.scene import walls_of
 from nscd_lmp.door.walls import Plane
 
@@ -30,6 +32,9 @@ def attach(
     restitution: float = 0.0,
     friction: float | Literal["stick"] = 0.0,
     e_t: float = 0.0,
+    materials: Mapping[tuple[int, int], Material] | None = None,
+    walls: Sequence[Plane] | None = None,
+    inertia: Literal["sphere", "disc"] | None = None,
     accuracy: Literal["loose", "normal", "tight"] | None = None,
     tol: float | None = None,
     criterion: Literal["paper", "natural"] | None = None,
@@ -38,12 +43,10 @@ def attach(
     maxiter: int = 1000,
     warmstart: bool | None = None,
     paper: bool = False,
-    walls: Sequence[Plane] | None = None,
     rho: float | None = None,
     gamma: float | None = None,
     theta: float = 0.5,
     recovery: float = 0.2,
-    inertia: Literal["sphere", "disc"] | None = None,
     unconverged: Literal["ignore", "warn", "error"] = "warn",
     threads: int = 1,
     door: Literal["external", "invoke"] = "external",
@@ -60,62 +63,67 @@ def attach(
     group : str
         Atoms to move; the others are obstacles of infinite mass.
     solver : str or callable, optional
-        None: ``"auto"``. A name of :data:`nscd_lmp.SOLVERS`, or a function that takes a :class:`ContactSystem` and
-        returns the impulses (N s), a float64 array of shape (n,), with friction (n, 2) in a planar scene and (n, 3) in
-        space.
+        A name of :data:`nscd_lmp.SOLVERS`, or a function that takes a :class:`ContactSystem` and returns the impulses
+        (N s), a float64 array of shape (n,), with friction (n, 2) in a planar scene and (n, 3) in space. None:
+        ``"auto"``.
     law : str, optional
-        A name of :data:`nscd_lmp.LAWS`. None: ``"gap"``.
+        A name of :data:`nscd_lmp.LAWS`, the contact law. None: ``"gap"``.
     restitution : float
-        Newton's coefficient e, 0 to 1.
+        Newton's coefficient e of contacts without their own; 0 to 1.
     friction : float or "stick"
-        Coulomb's coefficient of pairs, and of walls without their own. 0: no spins, omega is left alone.
-        ``"stick"``: no slip while in contact.
+        Coulomb's coefficient mu of contacts without their own, or ``"stick"``: no slip while in contact; where no
+        contact has any, grains have no spins; >= 0.
     e_t : float
-        Tangential restitution, 0 to 1.
-    accuracy : str, optional
-        How good the answers are, where `tol`, `overlap` and `budget` are None, with the criterion ``"natural"``:
-        ``"loose"`` is for grains that fall and flow, ``"tight"`` for beds that must stand still. None: ``"normal"``.
-        What each buys: docs/friction_accuracy.md.
-    tol : float, optional
-        A step is solved when the criterion is below it. None: 1e-3 with ``"natural"`` (1e-2 loose, 1e-4 tight),
-        1e-7 m/s with ``"paper"``.
-    criterion : str, optional
-        ``"natural"``: the natural map of all contacts over the norm of their velocities without impulses, as in
-        :func:`nscd_lmp.solve`. ``"paper"``: (42) of Barboteu & Dumont (2017), in m/s, the mean over the contacts.
-        None: ``"natural"``, also where `tol` is given; `paper` means ``"paper"``.
-    overlap : float, optional
-        Of ``law gap``: a step is solved only when no contact is driven deeper than this share of its own
-        smaller radius.
-        None: 5e-4 with the criterion ``"natural"`` (1e-3 loose, 1e-4 tight), no such condition with ``"paper"``.
-    budget : int, optional
-        Sweeps after which, or at `maxiter` if that is less, a step is accepted that is above `tol`, but below 30 `tol`
-        and within `overlap`; the column ``accepted_steps`` counts them. 0: never. None: 30 with friction and the
-        criterion ``"natural"`` (10 loose, 300 tight), and more where there are less than 2000 contacts, 2000 visits of
-        contacts for each; 0 otherwise.
-    maxiter : int
-        Iterations after which a step is given up; see `unconverged`.
-    warmstart : bool, optional
-        Start from the impulses of the step before. None: True.
-    paper : bool
-        The settings of Barboteu & Dumont (2017) for what is None above: ``pdas``, ``moreau``, tol 1e-7 m/s, no warm
-        start.
+        Tangential restitution of contacts without their own; with friction only; 0 to 1.
+    materials : dict, optional
+        What contacts of two types of atoms have of their own: ``{(1, 2): nscd_lmp.Material(friction=0.3)}``. Of several
+        that name a pair the later ones hold.
     walls : sequence of Plane, optional
         None: those that :func:`nscd_lmp.scene` was given, else none.
-    rho, gamma : float, optional
-        The solver's parameter as a multiple of 1/W_nn; None for its own default.
-    theta : float
-        Of ``law moreau``.
-    recovery : float
-        Of ``law gap``: share of an overlap given back per step, with friction of what is beyond 3e-5 of the smaller
-        radius.
     inertia : str, optional
-        Moment of inertia of a grain, ``"sphere"`` (2/5 m r^2) or ``"disc"`` (1/2 m r^2, in dimension 2). None: disc
-        in dimension 2, sphere otherwise.
+        ``"sphere"`` (2/5 m r^2), or ``"disc"`` (1/2 m r^2) in `dimension 2`; with friction only. None: ``"sphere"``, in
+        dimension 2 ``"disc"``.
+    accuracy : str, optional
+        ``"loose"``, ``"normal"`` or ``"tight"``: how good steps are where `tol`, `overlap` and `budget` are not given,
+        with ``criterion="natural"``: 1e-2, 1e-3 and 10; 1e-3, 5e-4 and 30; 1e-4, 1e-4 and 300. ``"loose"`` is for
+        grains that fall and flow, ``"tight"`` for beds that must stand still (docs/friction_accuracy.md). None:
+        ``"normal"``.
+    tol : float, optional
+        Value of the criterion below which a step is solved: of the scene's own velocities with ``criterion="natural"``,
+        in velocity units with ``criterion="paper"``; > 0. None: 1e-3; with ``criterion="paper"`` 1e-7.
+    criterion : str, optional
+        What `tol` is compared with. ``criterion="paper"``: (42) of Barboteu & Dumont (2017), the mean over the
+        contacts, the column ``criterion``; ``criterion="natural"``: the natural map of all contacts over the norm of
+        their velocities without impulses, the column ``relative_residual``. None: ``"natural"``.
+    overlap : float, optional
+        Of law ``"gap"``: a step is solved only when no contact is driven deeper than this share of its own smaller
+        radius; 0 to 1, not 0. None: 5e-4 with ``criterion="natural"``, no such condition with ``criterion="paper"``.
+    budget : int, optional
+        Sweeps after which, or at `maxiter` if that is less, a step above `tol` is accepted if it is below 30 `tol` and
+        within `overlap`, the column ``accepted_steps``; 0: never; >= 0. None: 30 with friction and
+        ``criterion="natural"`` (below 2000 contacts more: 60,000 visits of contacts), else 0.
+    maxiter : int
+        Iterations of a solve after which it is given up; >= 1.
+    warmstart : bool, optional
+        True or False: start from the impulses of the last step. None: True.
+    paper : bool
+        The settings of Barboteu & Dumont (2017) for what is None here: ``pdas``, ``moreau``, ``criterion="paper"``, tol
+        1e-7 m/s, no warm start.
+    rho : float, optional
+        Parameter of ``"sbp"``, ``"sal"``, ``"ebp"``, ``"eal"``, a multiple of 1/W_nn; > 0. None: 4/9 (``"sbp"``,
+        ``"sal"``), 1 (``"ebp"``, ``"eal"``).
+    gamma : float, optional
+        Parameter of ``"pdas"``, a multiple of 1/W_nn and, with friction, of 1/W_tt; > 0. None: 1.
+    theta : float
+        Of law ``"moreau"``: contacts are sought at q + (1 - theta) dt v; 0 to 1.
+    recovery : float
+        Of law ``"gap"``: share of an overlap given back per step (with friction of what is beyond 3e-5 of the smaller
+        radius); 0 to 1.
     unconverged : str
-        What to do about steps that were given up: ``"ignore"``, ``"warn"`` at the end of a run, or
-        ``"error"``.
+        ``"ignore"``, ``"warn"`` or ``"error"``: what to do about steps that are given up, say nothing, warn at the end
+        of a run, or stop it.
     threads : int
-        Threads that share the contacts of a rank, 1 to 64; see docs/ranks.md.
+        Threads of each rank that share its contacts: docs/ranks.md; 1 to 64.
     door : str
         What calls the step: ``"external"`` (LAMMPS' ``fix external``, in every build) or ``"invoke"`` (its
         ``fix python/invoke``, in builds with package PYTHON). The trajectories are equal to the last bit.
@@ -133,25 +141,22 @@ def attach(
         From the commands that run steps: whatever stopped the run, exceptions of a Python solver included;
         the positions and velocities are then those at the end of the last good step.
     """
-    keywords = _keywords(
-        paper=paper or None, law=law, restitution=restitution, friction=friction, e_t=e_t or None, tol=tol,
-        accuracy=accuracy, criterion=criterion, overlap=overlap, budget=budget, maxiter=maxiter, warmstart=warmstart,
-        rho=rho, gamma=gamma, theta=theta, recovery=recovery, unconverged=unconverged, inertia=inertia, threads=threads,
-    )  # fmt: skip
+    given = {name: value for name, value in locals().items() if name in KEYWORDS and not callable(value)}
+    keywords = _words(given)
     custom = None
     if callable(solver):
         custom = _with_contact_system(solver)
-    elif solver is not None:
-        keywords += ["solver", solver]
+    keywords += material_words(materials or {})
     for wall in walls_of(lmp) if walls is None else walls:
         keywords += wall.keywords()
     return Door(lmp, group, keywords, custom, door).attached
 
 
-def _keywords(**values: Any) -> list[str]:
-    """Return the values as words of ``fix nscd``; None is left out."""
+def _words(given: dict[str, Any]) -> list[str]:
+    """Return the keywords of ``fix nscd`` with their values; None is left out, and `paper` comes first."""
     words: list[str] = []
-    for keyword, value in values.items():
+    for keyword in sorted(given, key=lambda name: name != "paper"):
+        value = given[keyword]
         if value is None:
             continue
         if isinstance(value, np.generic):

@@ -3,7 +3,8 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+
+from nscd_lmp.door.materials import Friction, own_words
 
 
 @dataclass(frozen=True)
@@ -16,13 +17,15 @@ class Plane:
         Any point of the plane, in LAMMPS' length unit.
     normal : three floats
         Towards the grains; any length but zero.
-    friction : float or "stick", optional
-        Coulomb's coefficient of this wall; None for that of the pairs. ``"stick"``: no slip while in contact.
+    friction, restitution, e_t : optional
+        What its contacts have of their own, as in :class:`nscd_lmp.Material`.
     """
 
     point: Sequence[float]
     normal: Sequence[float]
-    friction: float | Literal["stick"] | None = None
+    friction: Friction | None = None
+    restitution: float | None = None
+    e_t: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("point", "normal"):
@@ -32,6 +35,4 @@ class Plane:
     def keywords(self) -> list[str]:
         """Return the words of ``fix nscd`` for this wall."""
         words = ["wall", "plane", *(repr(float(value)) for value in (*self.point, *self.normal))]
-        if self.friction is not None:
-            words += ["friction", self.friction if isinstance(self.friction, str) else repr(float(self.friction))]
-        return words
+        return words + own_words(self)

@@ -68,7 +68,8 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks
   nscd::Settings settings;
   or_stop(error, id, [&] {
     nscd::parse_keywords(settings, {arg + 3, arg + narg});
-    step_ = std::make_unique<nscd::Step>(settings, nscd::Step::CustomSolver{}, domain->dimension, &ranks_);
+    step_ = std::make_unique<nscd::Step>(settings, nscd::Step::CustomSolver{}, domain->dimension, &ranks_,
+                                         atom->ntypes);
   });
   size_local_cols = nscd::contact_columns(settings);
   // As many as rows have, beyond the totals zeros: `dump local f_ID[*]` takes as many columns as the global array has.
@@ -256,6 +257,7 @@ nscd::Grains FixNscd::grains()
   g.tag = atom->tag;
   g.home = homes_.empty() ? nullptr : homes_.data() + atom->nlocal;
   g.mask = atom->mask;
+  g.type = atom->type;
   g.group = groupbit;
   g.held = held_;
   g.earlier = others_.earlier;

@@ -84,6 +84,7 @@ nscd::Grains Scene::grains()
   g.mass = mass.data();
   g.tag = tag.data();
   g.mask = mask.data();
+  if (!type.empty()) g.type = type.data();
   if (!home.empty()) g.home = home.data();
   return g;
 }

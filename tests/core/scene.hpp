@@ -16,6 +16,7 @@ struct Scene {
   std::vector<double> x, v, f, omega, torque, radius, mass;
   std::vector<std::int32_t> tag;
   std::vector<int> mask;  // 1: moves, 2: an obstacle
+  std::vector<int> type;  // from 1; empty where there is one
   std::vector<int> home;  // of images: rank that owns the grain; empty on one rank
   int owned = 0;
   bool newton = true;

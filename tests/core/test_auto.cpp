@@ -35,10 +35,10 @@ struct Tower {
 
   nscd::SolverReport solve(std::string_view solver, const nscd::SolverOptions &options, bool as_matrix = false)
   {
-    nscd::Problem problem{bodies, contacts, 0, 1, workspace};
+    nscd::Problem problem{bodies, contacts, 1, workspace};
     const double response = model == nscd::Model::planar ? nscd::disc_spin_response : nscd::sphere_spin_response;
     if (model != nscd::Model::frictionless)
-      problem.sliding = {model, response, 0, spins.data(), planar.data(), spatial.data()};
+      problem.sliding = {model, response, spins.data(), planar.data(), spatial.data()};
     const nscd::SolverEntry &entry = nscd::find_solver(solver);
     return as_matrix ? nscd::solve_assembled(problem, options, entry.solve_global) : entry.solve(problem, options);
   }

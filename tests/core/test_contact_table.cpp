@@ -19,6 +19,7 @@ static void mark(ContactTable &table, std::size_t k, int mark)
   for (auto *const numbers : {&table.per_approach, &table.impact_impulse, &table.impact_moment, &table.impact_kick})
     if (numbers->is_open()) (*numbers)[k] = mark;
   table.impact_tangential[k] = nscd::Vec4{double(mark), 0, 0, 0};
+  table.material[k] = nscd::MaterialNumber(mark);
 }
 
 static bool says(const ContactTable &table, std::size_t k, int mark)
@@ -27,7 +28,7 @@ static bool says(const ContactTable &table, std::size_t k, int mark)
       table.planar[k].mu == mark && table.spatial[k].mu == mark && table.impact_tangential[k][0] == mark;
   for (const auto *const numbers : {&table.per_approach, &table.impact_impulse, &table.impact_moment})
     same &= (*numbers)[k] == mark;
-  return same;
+  return same && table.material[k] == nscd::MaterialNumber(mark);
 }
 
 static bool is_in_step(const ContactTable &table)
@@ -41,6 +42,7 @@ static void open_all_but_one(ContactTable &table)
 {
   table.planar.open();
   table.spatial.open();
+  table.material.open();
   table.per_approach.open();
   table.impact_impulse.open();
   table.impact_tangential.open();
@@ -75,7 +77,7 @@ TEST(rows_of_a_contact_table_stay_together)
 TEST(a_column_is_as_long_as_its_table_or_closed)
 {
   ContactTable table;
-  CHECK(table.all().size() == 9 && table.contacts.is_open() && !table.per_approach.is_open());
+  CHECK(table.all().size() == 10 && table.contacts.is_open() && !table.per_approach.is_open());
   table.resize(3);
   CHECK(is_in_step(table) && table.per_approach.size() == 0);
   table.per_approach.open();

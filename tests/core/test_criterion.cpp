@@ -25,7 +25,11 @@ struct Hand {
 
   nscd::Criterion measure(double restitution = 0, double free_norm = 1, const double *carried = nullptr)
   {
-    return nscd::measure({bodies, contacts, restitution, free_norm, workspace}, carried);
+    const nscd::Material material{0, restitution, 0};
+    const std::vector<nscd::MaterialNumber> numbers(contacts.size(), 0);
+    nscd::Problem problem{bodies, contacts, free_norm, workspace};
+    problem.restitution = {numbers, {&material, 1}};
+    return nscd::measure(problem, carried);
   }
 };
 
@@ -73,6 +77,19 @@ TEST(restitution_scales_the_parts)
   CHECK_NEAR(elastic.relative, plain.relative, 1e-15);
 }
 
+// Each contact by its own: a collision of e 1 beside contacts of e 0.
+TEST(restitution_scales_its_own_contact_alone)
+{
+  Hand scene;
+  scene.add(2, -3, 5);
+  scene.add(2, -1, 0);
+  const nscd::Material materials[] = {{0, 0, 0}, {0, 1, 0}};
+  const nscd::MaterialNumber numbers[] = {0, 1};
+  nscd::Problem problem{scene.bodies, scene.contacts, 1, scene.workspace};
+  problem.restitution = {numbers, materials};
+  CHECK_NEAR(nscd::measure(problem).penetration, (3 + 0.5) / 2, 1e-15);
+}
+
 TEST(a_tensile_impulse_is_a_residual_though_its_contact_rests)
 {
   Hand scene;
@@ -114,8 +131,11 @@ struct SlidingHand : Hand {
 
   nscd::Criterion measure(double restitution = 0, double free_norm = 1, const double *carried = nullptr)
   {
-    nscd::Problem problem{bodies, contacts, restitution, free_norm, workspace};
-    problem.sliding = {nscd::Model::spatial, nscd::sphere_spin_response, e_t, spins.data(), nullptr, slides.data()};
+    const nscd::Material material{0, restitution, e_t};
+    const std::vector<nscd::MaterialNumber> numbers(contacts.size(), 0);
+    nscd::Problem problem{bodies, contacts, free_norm, workspace};
+    problem.restitution = {numbers, {&material, 1}};
+    problem.sliding = {nscd::Model::spatial, nscd::sphere_spin_response, spins.data(), nullptr, slides.data()};
     return nscd::measure(problem, carried);
   }
 };

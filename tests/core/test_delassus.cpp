@@ -61,9 +61,9 @@ struct Heap {
 
   nscd::Problem problem()
   {
-    nscd::Problem p{bodies, contacts, 0, 1, workspace};
+    nscd::Problem p{bodies, contacts, 1, workspace};
     if (model != Model::frictionless)
-      p.sliding = {model, response(), 0, spins.data(), planar.data(), spatial.data()};
+      p.sliding = {model, response(), spins.data(), planar.data(), spatial.data()};
     return p;
   }
 
@@ -226,7 +226,7 @@ TEST(what_is_called_solved_is_solved_by_the_impulses_alone)
       contacts.push_back({Vec4{0, 0, 1, 0}, 0, i == 1 ? 1 : 0.5, 0, i, i - 1});
     }
     nscd::Workspace workspace{};
-    nscd::Problem column{bodies, contacts, 0, 5e-3, workspace};
+    nscd::Problem column{bodies, contacts, 5e-3, workspace};
     const nscd::SolverOptions options{1e-8, 20000, 1, nscd::Stop::natural};
     CHECK(solver.solve(column, options).converged);
     for (int i = 1; i <= grains; ++i) bodies[i] = Vec4{0, 0, -5e-3, 1};

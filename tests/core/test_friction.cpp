@@ -230,8 +230,11 @@ struct FlatPile {
 
   nscd::SolverReport solve(const nscd::SolverEntry &solver, nscd::Model model)
   {
-    nscd::Problem problem{bodies, contacts, 0.5, 1, workspace};
-    problem.sliding = {model, nscd::disc_spin_response, 0.25, spins.data(), planar.data(), spatial.data()};
+    const nscd::Material material{0, 0.5, 0.25};
+    const std::vector<nscd::MaterialNumber> numbers(contacts.size(), 0);
+    nscd::Problem problem{bodies, contacts, 1, workspace};
+    problem.restitution = {numbers, {&material, 1}};
+    problem.sliding = {model, nscd::disc_spin_response, spins.data(), planar.data(), spatial.data()};
     return solver.solve(problem, {1e-9, 40, solver.default_parameter});
   }
 };

@@ -29,7 +29,10 @@ struct OneContact {
   const OneContact &solve(const nscd::SolverEntry &solver, double parameter = 0, int maxiter = 1000)
   {
     const double v = nscd::normal_velocity(contacts[0], bodies.data()) + contacts[0].bias;
-    nscd::Problem problem{bodies, contacts, e, std::abs(v), workspace};
+    const nscd::Material material{0, e, 0};
+    const nscd::MaterialNumber number = 0;
+    nscd::Problem problem{bodies, contacts, std::abs(v), workspace};
+    problem.restitution = {{&number, 1}, {&material, 1}};
     report = solver.solve(problem, {tol, maxiter, parameter > 0 ? parameter : solver.default_parameter});
     return *this;
   }
@@ -165,7 +168,7 @@ TEST(no_contacts_are_solved_at_once)
   nscd::AlignedVector<Body> bodies(3);
   nscd::Workspace workspace;
   for (const auto &solver : nscd::solvers()) {
-    nscd::Problem problem{bodies, {}, 0, 0, workspace};
+    nscd::Problem problem{bodies, {}, 0, workspace};
     const nscd::SolverReport report = solver.solve(problem, {});
     CHECK(report.converged && report.iterations == 0 && report.criterion.total() == 0);
   }

@@ -94,7 +94,7 @@ TEST(grains_that_a_solve_drives_beyond_the_list_are_found)
     CHECK(find_contact(step.state(), 2, 3) != nullptr);
     CHECK(step.report().largest_overlap < 1e-8);
     CHECK(scene.x[3 * 3 + 1] - scene.x[3 * 2 + 1] > 1.1 - 1e-8);
-    const bool bounces = step.settings().restitution > 0;   // and leaves at once
+    const bool bounces = step.settings().restitutive();   // and leaves at once
     CHECK(bounces || step.wants_rebuild());
   }
 }

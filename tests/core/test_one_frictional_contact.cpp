@@ -56,8 +56,11 @@ struct Rubbing {
 
   void solve(const nscd::SolverEntry &solver, double tol, int maxiter)
   {
-    nscd::Problem problem{bodies, contacts, e, speed, workspace};
-    problem.sliding = {planar ? Model::planar : Model::spatial, response, e_t, spins.data()};
+    const nscd::Material material{0, e, e_t};
+    const nscd::MaterialNumber number = 0;
+    nscd::Problem problem{bodies, contacts, speed, workspace};
+    problem.restitution = {{&number, 1}, {&material, 1}};
+    problem.sliding = {planar ? Model::planar : Model::spatial, response, spins.data()};
     if constexpr (planar) problem.sliding.planar = slides.data();
     else problem.sliding.spatial = slides.data();
     report = solver.solve(problem, {tol, maxiter, solver.default_parameter});

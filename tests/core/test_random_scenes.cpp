@@ -54,7 +54,7 @@ static bool in_cones(const Step &step)
   bool inside = true;
   for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
     const int j = s.table.infos[k].atom_j;
-    const double mu = j < 0 ? s.in.settings.wall_friction(-1 - j) : s.in.settings.friction;
+    const double mu = j < 0 ? s.in.materials[s.in.materials.of_wall(-1 - j)].friction : s.in.settings.material.friction;
     const double slack = 1e-7 * s.table.contacts[k].w_inverse * double(s.table.contacts.size());
     const double tangential = nscd::length(nscd::tangential_impulse(s, k)), normal = s.table.contacts[k].impulse;
     inside &= tangential <= slack + (normal > -slack ? mu * (normal + slack) : 0);
@@ -74,7 +74,7 @@ static double left_over(const nscd::State &s)
     sum += std::max(0.0, -v);
     if (s.friction.model == nscd::Model::frictionless) sum += std::abs(v * p);
   }
-  return sum / std::max(1.0, double(s.table.contacts.size())) / (1 + s.in.settings.restitution);
+  return sum / std::max(1.0, double(s.table.contacts.size())) / (1 + s.in.settings.material.restitution);
 }
 
 // What holds after any step: finite arrays, no tension in a solved step, the energy that contacts took accounted for.

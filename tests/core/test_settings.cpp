@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "check.hpp"
 #include "scene.hpp"
+#include "settings/keyword.hpp"
 #include "step/report.hpp"
 
 #include <cmath>
@@ -13,7 +14,7 @@ TEST(keywords_set_what_they_name)
       "solver sal law moreau restitution 0.5 tol 1e-9 maxiter 7 warmstart no rho 0.25 theta 0.75 recovery 0.1 "
       "unconverged error wall plane 1 2 3 0 0 4 wall plane 0 0 0 0 1 0");
   CHECK(s.solver == "sal" && s.law == "moreau" && s.maxiter == 7 && !s.warmstart);
-  CHECK(s.restitution == 0.5 && s.tol == 1e-9 && s.rho == 0.25 && s.theta == 0.75 && s.recovery == 0.1);
+  CHECK(s.material.restitution == 0.5 && s.tol == 1e-9 && s.rho == 0.25 && s.theta == 0.75 && s.recovery == 0.1);
   CHECK(!s.gamma && s.unconverged == nscd::Unconverged::error);
   CHECK(s.walls.size() == 2 && s.walls[0].point[1] == 2 && s.walls[0].normal[2] == 4 && s.walls[1].normal[1] == 1);
   CHECK(settings("solver pdas gamma 2").gamma == 2);
@@ -22,7 +23,7 @@ TEST(keywords_set_what_they_name)
 TEST(no_keywords_leave_the_defaults)
 {
   const nscd::Settings s = checked("");
-  CHECK(s.solver == "auto" && s.law == "gap" && s.restitution == 0 && s.maxiter == 1000);
+  CHECK(s.solver == "auto" && s.law == "gap" && s.material.restitution == 0 && s.maxiter == 1000);
   CHECK(s.overlap == 5e-4 && !checked("law moreau").overlap && !checked("criterion paper").overlap);
   CHECK(s.tol == 1e-3 && s.criterion == nscd::Stop::natural && s.threads == 1);
   CHECK(s.warmstart && s.unconverged == nscd::Unconverged::warn && s.walls.empty());
@@ -66,19 +67,19 @@ TEST(a_keyword_is_given_once)
   CHECK(settings("wall plane 0 0 0 0 0 1 wall plane 0 0 9 0 0 -1").walls.size() == 2);
 }
 
-TEST(what_a_wall_has_not_is_refused_behind_it)
+TEST(what_a_wall_has_already_is_refused_behind_it)
 {
-  CHECK_ERROR(settings("wall plane 0 0 0 0 0 1 restitution 0.5"), "restitution right behind a wall");
-  CHECK_ERROR(settings("wall plane 0 0 0 0 0 1 friction 0.3 restitution 0.5"), "Give it before the walls");
-  CHECK_ERROR(settings("friction 0.5 wall plane 0 0 0 0 0 1 e_t 0.5"), "e_t right behind a wall");
+  CHECK_ERROR(settings("wall plane 0 0 0 0 0 1 restitution 0.5 restitution 0.2"), "has its restitution already");
+  CHECK_ERROR(settings("wall plane 0 0 0 0 0 1 e_t 0.1 friction 0.3 e_t 0.5"), "give that before walls and materials");
+  CHECK_ERROR(settings("material 1 1 friction 0.5 stick"), "the material has its friction already");
   CHECK_ERROR(settings("wall plane 0 0 0 0 0 1 friction 0.7 friction 0.2"), "the wall has its friction already");
   CHECK_ERROR(settings("wall plane 0 0 0 0 0 1 stick stick"), "the wall has its friction already");
-  CHECK(settings("restitution 0.5 wall plane 0 0 0 0 0 1").restitution == 0.5);
+  CHECK(settings("restitution 0.5 wall plane 0 0 0 0 0 1").material.restitution == 0.5);
 }
 
 TEST(numbers_are_those_of_lammps)
 {
-  CHECK(settings("restitution +0.5").restitution == 0.5 && settings("maxiter +7").maxiter == 7);
+  CHECK(settings("restitution +0.5").material.restitution == 0.5 && settings("maxiter +7").maxiter == 7);
   CHECK(settings("wall plane +0 -0 +.5 0 0 +1e0").walls[0].point[2] == 0.5);
   for (const char *wrong : {"+", "++0.5", "+-0.5", "-+0.5", "+ 0.5"})
     CHECK_ERROR(settings("restitution " + std::string(wrong)), "is not a number");
@@ -168,27 +169,32 @@ TEST(friction_keywords_set_what_they_name)
   const nscd::Settings s = settings(
       "friction 0.3 e_t 0.25 wall plane 0 0 0 0 0 1 friction 0.7 wall plane 0 0 9 0 0 -1 friction stick "
       "wall plane 0 0 0 1 0 0 stick wall plane 9 0 0 -1 0 0 inertia sphere wall plane 0 0 0 0 1 0 friction 0");
-  CHECK(s.friction == 0.3 && s.e_t == 0.25 && s.inertia == nscd::Inertia::sphere && s.frictional());
+  CHECK(s.material.friction == 0.3 && s.material.e_t == 0.25 && s.inertia == nscd::Inertia::sphere && s.frictional());
   const double expected[] = {0.7, nscd::stick, nscd::stick, 0.3, 0};
   CHECK(s.walls.size() == 5);
-  for (std::size_t k = 0; k < 5; ++k) CHECK(s.wall_friction(k) == expected[k]);
-  CHECK(!s.walls[3].friction && s.walls[4].friction == 0.0);
+  const nscd::Materials materials(s, 1);
+  for (std::size_t k = 0; k < 5; ++k) CHECK(materials[materials.of_wall(int(k))].friction == expected[k]);
+  CHECK(!s.walls[3].own.has(0) && s.walls[4].own.has(0) && s.walls[4].own.value(0) == 0);
   for (const char *words : {"stick", "friction stick", "friction inf"})
-    CHECK(settings(words).friction == nscd::stick);
+    CHECK(settings(words).material.friction == nscd::stick);
   CHECK(settings("inertia disc").inertia == nscd::Inertia::disc && !settings("").inertia);
 }
 
 // Right behind a wall a `friction` is the wall's; anywhere else it is that of pairs, and of walls without their own.
 TEST(friction_belongs_to_the_wall_it_stands_behind)
 {
+  const auto on_wall = [](const nscd::Settings &s) {
+    const nscd::Materials materials(s, 1);
+    return materials[materials.of_wall(0)].friction;
+  };
   const nscd::Settings walls_own = checked("wall plane 0 0 0 0 0 1 friction 0.7");
-  CHECK(walls_own.friction == 0 && walls_own.frictional() && walls_own.wall_friction(0) == 0.7);
+  CHECK(walls_own.material.friction == 0 && walls_own.frictional() && on_wall(walls_own) == 0.7);
   const nscd::Settings pairs = checked("wall plane 0 0 0 0 0 1 tol 1e-9 friction 0.7");
-  CHECK(pairs.friction == 0.7 && !pairs.walls[0].friction && pairs.wall_friction(0) == 0.7);
+  CHECK(pairs.material.friction == 0.7 && !pairs.walls[0].own.has(0) && on_wall(pairs) == 0.7);
   const nscd::Settings both = checked("friction 0.2 wall plane 0 0 0 0 0 1 friction 0.7");
-  CHECK(both.friction == 0.2 && both.wall_friction(0) == 0.7);
+  CHECK(both.material.friction == 0.2 && on_wall(both) == 0.7);
   const nscd::Settings smooth = checked("friction 0.5 wall plane 0 0 0 0 0 1 friction 0");
-  CHECK(smooth.wall_friction(0) == 0 && smooth.frictional());
+  CHECK(on_wall(smooth) == 0 && smooth.frictional());
 }
 
 TEST(coefficients_of_zero_are_no_friction)
@@ -240,6 +246,31 @@ TEST(the_description_names_what_was_chosen)
   const std::string text = nscd::describe(nscd::Step(checked(words)));
   for (const char *part : {"moreau", "SAL", "rho = 0.3/W_nn", "1 wall", "restitution 0.5", "tol 1e-06 (natural map)"})
     check::says(__FILE__, __LINE__, text, part);
+}
+
+// What has no words of its own there is told as a script gives it, where it is not the default.
+TEST(the_description_names_all_that_is_not_the_default)
+{
+  const std::string text = nscd::describe(nscd::Step(checked("maxiter 7 recovery 0.1 warmstart no accuracy tight")));
+  for (const char *part : {"; maxiter 7", "; recovery 0.1", "; warmstart no", "; accuracy tight"})
+    check::says(__FILE__, __LINE__, text, part);
+  const std::string plain = nscd::describe(nscd::Step(checked("")));
+  for (const nscd::Keyword &keyword : nscd::keywords())
+    if (!keyword.described) CHECK(plain.find("; " + std::string(keyword.name)) == plain.npos);
+}
+
+// The table is what the reader reads: every keyword of it takes its own default, and tells it back.
+TEST(every_keyword_reads_what_it_writes)
+{
+  for (const nscd::Keyword &keyword : nscd::keywords()) {
+    if (!keyword.value.write) continue;
+    const std::string value = keyword.value.write({});
+    if (value.empty()) continue;
+    nscd::Settings read = settings(std::string(keyword.name) + " " + value);
+    CHECK(keyword.value.write(read) == value);
+    for (const std::string &choice : keyword.value.choices ? keyword.value.choices() : std::vector<std::string>{})
+      CHECK(keyword.value.write(settings(std::string(keyword.name) + " " + choice)) == choice);
+  }
 }
 
 TEST(report_columns_have_names_and_values)

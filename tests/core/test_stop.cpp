@@ -86,7 +86,7 @@ TEST(round_off_is_no_residual)
   alignas(64) nscd::Body bodies[] = {{-1e-16, 0, 0, 1}, {0, 0, 0, 0}};
   nscd::Contact contacts[] = {{{1, 0, 0, 0}, 0, 1, 0, 0, 1}};
   nscd::Workspace workspace;
-  nscd::Problem problem{bodies, contacts, 0, 1e-16, workspace};
+  nscd::Problem problem{bodies, contacts, 1e-16, workspace};
   CHECK_NEAR(measure(problem).relative, 1, 1e-12);
   problem.round_off = 1e-14;   // of grains as fast as 1 m/s
   CHECK(measure(problem).relative == 0);

@@ -65,7 +65,8 @@ TEST(directions_that_do_not_turn_or_turn_over_keep_the_impulse)
 template <class M>
 struct RememberedContact {
   nscd::Settings chosen{};
-  nscd::State state{.in = {.settings = chosen}};
+  nscd::Materials materials{chosen, 1};
+  nscd::State state{.in = {.settings = chosen, .materials = materials}};
 
   RememberedContact(const Vec4 &normal, double impulse, const Vec4 &tangential)
   {

@@ -154,7 +154,6 @@ NSCD_INLINE void apply_tangential(const Contact &c, const typename Model::Tangen
 struct Sliding {
   Model model = Model::frictionless;
   double spin_response = 0;
-  double restitution = 0;  // e_t that the biases contain; scales the tangential v~ in the criterion
   Vec4 *spins = nullptr;   // one a body
   Planar::Slide *planar = nullptr;
   Spatial::Slide *spatial = nullptr;

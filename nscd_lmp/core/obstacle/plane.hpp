@@ -3,8 +3,7 @@
 #pragma once
 
 #include "contact/contact.hpp"
-
-#include <optional>
+#include "contact/material.hpp"
 
 namespace nscd {
 
@@ -12,7 +11,7 @@ namespace nscd {
 struct Plane {
   double point[3];
   double normal[3];
-  std::optional<double> friction{};  // its own coefficient; none: that of the pairs
+  OwnMaterial own{};   // what it has not is that of contacts without a material of their own
 };
 
 // n.x - offset is the height above the plane, m.

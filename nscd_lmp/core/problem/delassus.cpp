@@ -158,7 +158,6 @@ AssembledProblem::AssembledProblem(const Problem &grains) :
   problem_.p = p_;
   problem_.per_approach = grains.per_approach;
   problem_.restitution = grains.restitution;
-  problem_.restitution_t = grains.sliding.restitution;
 }
 
 void AssembledProblem::write_back(Problem &grains) const

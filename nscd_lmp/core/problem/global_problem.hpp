@@ -6,6 +6,7 @@
 // it made from the bodies (delassus.hpp). Vectors are laid out contact by contact, N, T1[, T2].
 #pragma once
 
+#include "contact/material.hpp"
 #include "problem/block_matrix.hpp"
 
 #include <cmath>
@@ -25,8 +26,7 @@ struct GlobalProblem {
   std::span<const double> q;       // (n, dim) velocities without impulses, biases included, m/s
   std::span<const double> mu;      // (n) Coulomb's coefficients, infinite for stick; empty if dim = 1
   std::span<double> p;             // (n, dim) in: start impulses; out: solution, N s
-  double restitution = 0;          // that q contains: scales v in the criterion, as in Problem
-  double restitution_t = 0;
+  MaterialsOf restitution{};       // (n) that q contains: scales v in the criterion, as in Problem; or empty
   std::vector<Diagonal> diagonals{};  // (n), by find_diagonals()
   std::span<const double> per_approach{};   // (n) as Problem has it, or empty: any
 

@@ -5,6 +5,7 @@
 #include "base/storage.hpp"
 #include "contact/contact.hpp"
 #include "contact/friction.hpp"
+#include "contact/material.hpp"
 #include "problem/islands.hpp"
 
 #include <cstdint>
@@ -52,7 +53,6 @@ class Team;
 struct Problem {
   std::span<Body> bodies;       // 32 B aligned; in: free velocities plus what the start impulses gave; out: solution
   std::span<Contact> contacts;  // in: start impulses; out: solution
-  double restitution = 0;       // e of (21); scales v to v~ = v / (1 + e) in the criterion
   double free_norm = 0;         // ||v_free + bias||_2 over the contacts, the scale of the relative residual, m/s
   Workspace &workspace;
   Sliding sliding{};            // tangential impulses and spins, in and out as these; nothing in a frictionless scene
@@ -63,6 +63,8 @@ struct Problem {
   // What every contact has at stake, beside the contacts; then each is judged by its own (closer_look.hpp) once the
   // sums over all have met the goal.
   std::span<const ContactInfo> infos{};
+  // Beside the contacts, where their biases hold restitution: scales v to v~ = v / (1 + e) in criterion (42); or empty.
+  MaterialsOf restitution{};
   std::span<const double> per_approach{};   // beside the contacts, 1 / the approach that may be left, s/m; or empty
   bool judges_contacts = false;  // whether there are infos; the same on all ranks
   bool judges_islands = false;

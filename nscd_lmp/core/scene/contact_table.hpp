@@ -5,6 +5,7 @@
 
 #include "contact/contact.hpp"
 #include "contact/friction.hpp"
+#include "contact/material.hpp"
 #include "scene/columns.hpp"
 
 #include <type_traits>
@@ -16,6 +17,7 @@ struct ContactTable : Columns {
   Column<ContactInfo> infos{*this};
   ColumnAtTimes<Planar::Slide> planar{*this};         // with friction one of the two
   ColumnAtTimes<Spatial::Slide> spatial{*this};
+  ColumnAtTimes<MaterialNumber> material{*this};      // where something looks at it beside mu, which slides have
   ColumnAtTimes<double> per_approach{*this};          // 1 / the approach that a step may leave, s/m; or closed: any
   // Of impacts that are resolved ahead of the contacts, while and after they are: N s.
   ColumnAtTimes<double> impact_impulse{*this};

@@ -15,19 +15,6 @@ Model choose_model(const Settings &settings, int dimension)
   return dimension == 2 ? Model::planar : Model::spatial;
 }
 
-void place_slides(State &s, std::size_t first)
-{
-  const double pairs = s.in.settings.friction;
-  with_friction(s.friction.model, [&]<class M>(M) {
-    auto &slides = s.table.slides<M>();
-    for (std::size_t k = first; k < slides.size(); ++k) {
-      const int j = s.table.infos[k].atom_j;
-      slides[k] = typename M::Slide{};
-      slides[k].mu = j < 0 ? s.in.settings.wall_friction(wall_index({0, j})) : pairs;
-    }
-  });
-}
-
 namespace {
 
 template <class M>
@@ -68,11 +55,12 @@ NSCD_HOT double tangential_work_of(const State &s)
 
 }    // namespace
 
-void set_tangential_bias(State &s, std::size_t first, double e_t)
+void set_tangential_bias(State &s, std::size_t first, bool restitution)
 {
   with_friction(s.friction.model, [&]<class M>(M) {
     auto &slides = s.table.slides<M>();
     for (std::size_t k = first; k < slides.size(); ++k) {
+      const double e_t = restitution ? s.material(k).e_t : 0;
       const auto before = e_t > 0 ? slip_at_start<M>(s, k) * e_t : typename M::Tangent{};
       set_bias(slides[k], s.drift.of.empty() ? before : before + tangential_drift<M>(s, k) * (1 + e_t));
     }
@@ -150,11 +138,11 @@ void write_impulse(State &s, std::size_t k, const double *components)
   add_impulse(s, k, components[0], tangential);
 }
 
-Sliding sliding(State &s, double e_t)
+Sliding sliding(State &s)
 {
   const Friction &f = s.friction;
   ContactTable &table = s.table;
-  return {f.model, f.spin_response, e_t, s.motion.spins.data(), table.planar.data(), table.spatial.data()};
+  return {f.model, f.spin_response, s.motion.spins.data(), table.planar.data(), table.spatial.data()};
 }
 
 }    // namespace nscd

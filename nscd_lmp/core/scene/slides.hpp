@@ -13,11 +13,8 @@ namespace nscd {
 // Frictionless, planar or spatial: what the settings and the dimension of the scene ask for.
 Model choose_model(const Settings &settings, int dimension);
 
-// Slides for the contacts from `first` on: coefficient of friction, no impulse, no bias.
-void place_slides(State &state, std::size_t first);
-
-// Biases e_t u_t of the contacts from `first` on, u_t at the start of the step, and what drifts.
-void set_tangential_bias(State &state, std::size_t first, double e_t);
+// Biases of the contacts from `first` on: what drifts and, with restitution, e_t u_t, u_t at the start of the step.
+void set_tangential_bias(State &state, std::size_t first, bool restitution);
 
 // Keeps the velocities of the contacts [first, last), biases included, with the bodies as they are, as those without
 // impulses (ContactInfo::free2); returns their 2-norm, m/s. In a frictionless scene these are the normal ones.
@@ -41,8 +38,8 @@ void read_impulse(const State &state, std::size_t k, double *components);
 void remove_impulse(State &state, std::size_t k);
 void write_impulse(State &state, std::size_t k, const double *components);
 
-// What a solver sees; e_t is what the biases contain.
-Sliding sliding(State &state, double e_t);
+// What a solver sees.
+Sliding sliding(State &state);
 
 // Tangential velocity of contact k at the start of the step.
 template <class M>

@@ -68,6 +68,7 @@ enum class Way : std::int8_t { has_moved, will_move, stands };
 // What a step was handed. Arrays of others, none of them kept.
 struct Input {
   const Settings &settings;
+  const Materials &materials;
   Grains grains{};
   int dimension = 3;                     // 2: all grains in a plane z = const
   double dt = 0;
@@ -136,6 +137,8 @@ struct State {
   // Bodies that are grains, of this rank or copies of others'.
   int moving() const { return in.grains.owned + motion.copies.count; }
   // Body that stands for a wall in contact k of body i.
+  // Of contact k, where the table has them.
+  const Material &material(std::size_t k) const { return in.materials[table.material[k]]; }
   int obstacle(int i, std::size_t k) const
   {
     return moving() + obstacle_copies * exec.slabs.of(i) + int(k % obstacle_copies);

@@ -34,6 +34,7 @@ struct Grains {
   const std::int32_t *tag = nullptr;   // (owned + ghosts), unique per grain; an image has its grain's
   const int *home = nullptr;       // (ghosts) rank that owns the grain; null on one rank
   const int *mask = nullptr;       // (owned + ghosts)
+  const int *type = nullptr;       // (owned + ghosts) from 1; where materials differ by pair
   int group = 1;                   // an atom moves if mask & group; the others are obstacles of infinite mass
   int later = 0;                   // obstacles of these groups move later in the step, all others have already moved
   int earlier = 0;                 // obstacles of these groups have moved since images were sent: their images have not

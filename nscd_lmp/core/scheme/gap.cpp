@@ -51,7 +51,7 @@ NSCD_HOT void set_biases(State &s, std::size_t first)
 
 class Gap final : public Scheme {
  public:
-  explicit Gap(const Settings &s) : Scheme({.moment = 0.5, .impacts_first = s.restitution > 0 || s.e_t > 0}) {}
+  explicit Gap(const Settings &s) : Scheme({.moment = 0.5, .impacts_first = s.restitutive()}) {}
   bool impacts(State &s, const SolvePart &solve) override { return resolve_impacts(s, bends_, solve); }
   void set_bias(State &s, std::size_t first) override { set_biases(s, first); }
   bool displace(State &s, std::span<const char> jammed) override { return displacements_.fill(s, jammed); }

@@ -28,12 +28,12 @@ void smooth_half(State &s, double sign)
 // Biases of an impact: what is left of the velocity when they meet, drift included, reversed.
 void bias_impact(State &s, std::size_t k, double u, double kick)
 {
-  const double e = s.in.settings.restitution;
+  const double e = s.material(k).restitution, e_t = s.material(k).e_t;
   s.table.contacts[k].bias = e * (u + kick) + kick + normal_drift(s, k);
   with_friction(s.friction.model, [&]<class M>(M) {
     const auto slip = velocity<M>(s.table.contacts[k], s.motion.bodies.data(), s.motion.spins.data()).t;
     const auto drift = tangential_drift<M>(s, k);
-    set_bias(s.table.slides<M>()[k], (slip + drift) * s.in.settings.e_t + drift);
+    set_bias(s.table.slides<M>()[k], (slip + drift) * e_t + drift);
   });
 }
 
@@ -41,7 +41,8 @@ void bias_impact(State &s, std::size_t k, double u, double kick)
 struct Closing {
   std::size_t here = 0;   // of this rank, at the front
   double all = 0;         // of all ranks
-  double energy = 0;      // of all ranks, J: what they approach each other with
+  // Of all ranks, J: what they approach each other with, and what they would give back of it.
+  double energy = 0, given_back = 0;
 };
 
 // Brings the contacts of S_m to the front and gives them their bias. In place: copies of them would double the memory
@@ -49,23 +50,25 @@ struct Closing {
 Closing select_closing(State &s, Bends &bends)
 {
   std::size_t closing = 0;
-  double energy = 0;
+  double energy = 0, given_back = 0;
   bends.look(s, [&](std::size_t k, double u) {
     return u < -resting_kicks * s.table.infos[k].kick - tolerances * tolerance(s.scales, worth(s.table.infos[k]));
   });
   for (const std::size_t k : bends.first_meetings(s)) {
     s.table.swap(k, closing);
     const double u = normal_velocity(s.table.contacts[closing], s.motion.bodies.data()) + normal_drift(s, closing);
-    energy += 0.5 * s.table.contacts[closing].w_inverse * u * u;
+    const double e = s.material(closing).restitution, approach = 0.5 * s.table.contacts[closing].w_inverse * u * u;
+    energy += approach;
+    given_back += e * e * approach;
     bias_impact(s, closing, u, s.table.impact_kick[closing]);
     ++closing;
   }
-  double sums[] = {double(closing), energy};
+  double sums[] = {double(closing), energy, given_back};
   if (s.exec.halo) {
     s.exec.halo->find_touching(s.table.contacts);
     s.exec.halo->sum(sums);
   }
-  return {closing, sums[0], sums[1]};
+  return {closing, sums[0], sums[1], sums[2]};
 }
 
 void keep_impulses(State &s, std::size_t closing)
@@ -112,8 +115,7 @@ bool resolve_impacts(State &s, Bends &bends, const SolvePart &solve)
   s.table.impact_moment.close();
   s.table.impact_kick.close();
   smooth_half(s, +1);
-  const double e = s.in.settings.restitution;
-  return e * e * closing.energy > worth_saying * first_energy;
+  return closing.given_back > worth_saying * first_energy;
 }
 
 }    // namespace nscd

@@ -21,14 +21,15 @@ namespace {
 
 class Moreau final : public Scheme {
  public:
-  explicit Moreau(const Settings &s) : Scheme({.prediction = 1 - s.theta, .e = s.restitution, .e_t = s.e_t}) {}
+  explicit Moreau(const Settings &s) : Scheme({.prediction = 1 - s.theta, .restitution = s.restitutive()}) {}
 
   void set_bias(State &s, std::size_t first) override
   {
-    const double e = s.in.settings.restitution;
-    if (e == 0 && s.drift.of.empty()) return;
-    for (std::size_t k = first; k < s.table.contacts.size(); ++k)
+    if (!constants.restitution && s.drift.of.empty()) return;
+    for (std::size_t k = first; k < s.table.contacts.size(); ++k) {
+      const double e = constants.restitution ? s.material(k).restitution : 0;
       s.table.contacts[k].bias = e * s.table.infos[k].speed_before + normal_drift(s, k);
+    }
   }
 
   bool displace(State &s, std::span<const char>) override

@@ -19,9 +19,7 @@ class Scheme {
     double prediction = 0;        // contacts are sought at q_k + prediction dt v_k
     double moment = 0;            // lasting contacts act moment dt after that, along the normal of their pair then
     bool impacts_first = false;   // impacts are resolved ahead of the contacts, from the free velocities of the bodies
-    // Restitution that the biases contain, for the criterion's v~ = v / (1 + e); e_t times the tangential velocity at
-    // the start of the step is in the tangential biases.
-    double e = 0, e_t = 0;
+    bool restitution = false;     // the biases hold that of the contacts, from the velocities at the start of the step
   };
 
   explicit Scheme(const Constants &of_scheme) : constants(of_scheme) {}

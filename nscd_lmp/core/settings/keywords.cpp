@@ -1,161 +1,248 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// fix nscd's keywords: from words to Settings.
-#include "base/error.hpp"
-#include "settings/settings.hpp"
-
-#include <charconv>
-#include <functional>
-#include <map>
-#include <set>
+// The table of fix nscd's keywords. In the texts *word* is a keyword or a value of one.
+#include "parallel/team.hpp"
+#include "settings/schemes.hpp"
+#include "settings/values.hpp"
 
 namespace nscd {
 
 namespace {
 
-// Hands out the words one by one; knows for which keyword a value is missing or malformed.
-class Words {
- public:
-  explicit Words(const std::vector<std::string> &words) : words_(words) {}
-  bool done() const { return next_ == words_.size(); }
-  // Takes the next word if it is this one.
-  bool skip(const std::string &word)
-  {
-    const bool there = !done() && words_[next_] == word;
-    if (there) keyword_ += " " + words_[next_++];
-    return there;
-  }
-  const std::string &keyword() { return keyword_ = words_[next_++]; }
+using namespace values;
 
-  const std::string &word()
-  {
-    if (done()) fail("keyword ", keyword_, " needs a value");
-    return words_[next_++];
-  }
+constexpr double largest = std::numeric_limits<double>::max();
+constexpr Limits share{.lo = 0, .hi = 1}, positive{.lo = 0, .hi = largest, .lo_is_in = false};
+constexpr std::string_view start_with_default = ": it is a multiple of 1/W_nn, and the default is a good start";
 
-  template <class Number>
-  Number number(const char *wanted = std::is_integral_v<Number> ? "a whole number" : "a number")
-  {
-    const std::string &text = word();
-    Number value{};
-    const char *first = text.data(), *const last = first + text.size();
-    const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';  // which LAMMPS takes, and from_chars not
-    const auto [end, problem] = std::from_chars(first + plus, last, value);
-    if (problem != std::errc() || end != last)
-      fail("keyword ", keyword_, ": '", text, "' is not ", wanted);
-    return value;
-  }
-
-  bool yes_or_no()
-  {
-    const std::string &text = word();
-    if (text == "yes" || text == "on" || text == "true") return true;
-    if (text == "no" || text == "off" || text == "false") return false;
-    fail("keyword ", keyword_, ": '", text, "' is neither yes nor no");
-  }
-
- private:
-  const std::vector<std::string> &words_;
-  std::size_t next_ = 0;
-  std::string keyword_;
-};
-
-double read_friction(Words &words)
+// Where a value is in settings.
+template <class T>
+auto at(T Settings::*member)
 {
-  return words.skip("stick") ? stick : words.number<double>("a number, nor stick");
+  return [member](auto &settings) -> auto & { return settings.*member; };
+}
+auto at(double Material::*part)
+{
+  return [part](auto &settings) -> auto & { return settings.material.*part; };
 }
 
-Inertia read_inertia(Words &words)
+// What stands right behind a wall or a pair of types is its own.
+void read_own(OwnMaterial &own, Arguments &words)
 {
-  const std::string &word = words.word();
-  if (word == "sphere") return Inertia::sphere;
-  if (word == "disc") return Inertia::disc;
-  fail("unknown inertia '", word, "': choose one of sphere, disc");
+  constexpr std::string_view friction_name = material_parts[0].name;
+  const auto read = [&](std::size_t part) {
+    if (own.has(part)) return false;
+    const bool is_friction = material_parts[part].name == friction_name;
+    if (is_friction && words.skip("stick")) own.set(part, stick);
+    else if (words.skip(material_parts[part].name))
+      own.set(part, is_friction ? read_friction(words) : words.number<double>());
+    return own.has(part);
+  };
+  for (std::size_t part = 0; part < material_parts.size();) part = read(part) ? 0 : part + 1;
 }
 
-// A friction right behind a wall is the wall's own.
-Plane read_wall(Words &words)
+Plane read_wall(Arguments &words)
 {
   const std::string &kind = words.word();
-  if (kind != "plane") fail("unknown wall '", kind, "': choose plane");
+  if (kind != "plane") refuse_choice("wall", kind, {"plane"});
   Plane plane{};
   for (double &value : plane.point) value = words.number<double>();
   for (double &value : plane.normal) value = words.number<double>();
-  if (words.skip("friction")) plane.friction = read_friction(words);
-  else if (words.skip("stick")) plane.friction = stick;
+  read_own(plane.own, words);
   return plane;
 }
 
-using Reader = std::function<void(Settings &, Words &)>;
-
-const std::map<std::string, Reader> &readers()
+TypeRange read_types(const std::string &text)
 {
-  static const std::map<std::string, Reader> list{
-      {"solver", [](Settings &s, Words &w) { s.solver = w.word(); }},
-      {"law", [](Settings &s, Words &w) { s.law = w.word(); }},
-      {"restitution", [](Settings &s, Words &w) { s.restitution = w.number<double>(); }},
-      {"friction", [](Settings &s, Words &w) { s.friction = read_friction(w); }},
-      {"stick", [](Settings &s, Words &) { s.friction = stick; }},
-      {"e_t", [](Settings &s, Words &w) { s.e_t = w.number<double>(); }},
-      {"inertia", [](Settings &s, Words &w) { s.inertia = read_inertia(w); }},
-      {"tol", [](Settings &s, Words &w) { s.tol = w.number<double>(); }},
-      {"accuracy", [](Settings &s, Words &w) { s.accuracy = parse_accuracy(w.word()); }},
-      {"criterion", [](Settings &s, Words &w) { s.criterion = parse_stop(w.word()); }},
-      {"maxiter", [](Settings &s, Words &w) { s.maxiter = w.number<int>(); }},
-      {"budget", [](Settings &s, Words &w) { s.budget = w.number<int>(); }},
-      {"warmstart", [](Settings &s, Words &w) { s.warmstart = w.yes_or_no(); }},
-      {"rho", [](Settings &s, Words &w) { s.rho = w.number<double>(); }},
-      {"gamma", [](Settings &s, Words &w) { s.gamma = w.number<double>(); }},
-      {"overlap", [](Settings &s, Words &w) { s.overlap = w.number<double>(); }},
-      {"paper", [](Settings &s, Words &w) { if (w.yes_or_no()) follow_paper(s); }},
-      {"theta", [](Settings &s, Words &w) { s.theta = w.number<double>(); }},
-      {"recovery", [](Settings &s, Words &w) { s.recovery = w.number<double>(); }},
-      {"threads", [](Settings &s, Words &w) { s.threads = w.number<int>(); }},
-      {"wall", [](Settings &s, Words &w) { s.walls.push_back(read_wall(w)); }},
-      {"unconverged", [](Settings &s, Words &w) { s.unconverged = parse_unconverged(w.word()); }},
+  const std::string_view all = text;
+  const std::size_t star = all.find('*');
+  TypeRange range;
+  const auto read = [&](std::string_view part, int &type) {
+    if (!Arguments::read(part, type) || type < 1)
+      fail("keyword material: '", text, "' names no types of atoms: give a number from 1, or a range as 2*4, 2* or *");
   };
-  return list;
+  if (star == all.npos) {
+    read(all, range.first);
+    range.last = range.first;
+    return range;
+  }
+  if (star > 0) read(all.substr(0, star), range.first);
+  if (star + 1 < all.size()) read(all.substr(star + 1), range.last);
+  if (range.last != 0 && range.last < range.first) fail("keyword material: the range '", text, "' has no types in it");
+  return range;
 }
 
-// What `paper yes` sets.
-const std::set<std::string> of_paper{"solver", "law", "criterion", "tol", "warmstart"};
-
-// Refuses a keyword whose place makes it mean something else than it seems to; `given` are those before it, `last` the
-// one right before it.
-void refuse_misplaced(const std::string &keyword, const std::string &last, const std::set<std::string> &given)
+void read_pair(Settings &settings, Arguments &words)
 {
-  if (keyword != "wall" && given.count(keyword == "stick" ? "friction" : keyword))
-    fail("keyword ", keyword, keyword == "stick" ? " is a friction, which" : "", " is given twice: give it once");
-  if (last == "wall" && (keyword == "restitution" || keyword == "e_t"))
-    fail("keyword ", keyword, " right behind a wall would be that of all contacts: a wall has a friction of its own, "
-         "but no ", keyword, ". Give it before the walls");
-  if (last == "wall" && (keyword == "friction" || keyword == "stick"))
-    fail("the wall has its friction already, and keyword ", keyword, " behind it would be that of the pairs: give that "
-         "before the walls");
-  if (keyword != "paper") return;
-  for (const std::string &other : of_paper)
-    if (given.count(other)) fail("keyword paper behind ", other, " would override it: give paper first");
+  const std::string first = words.word(), second = words.word();
+  PairMaterial pair{first + " " + second, read_types(first), read_types(second), {}};
+  read_own(pair.own, words);
+  for (std::size_t part = 0; part < material_parts.size(); ++part)
+    if (pair.own.has(part)) return settings.pairs.push_back(pair);
+  fail("keyword material: behind the two types stand friction, restitution or e_t, with their numbers");
+}
+
+std::vector<Keyword> table()
+{
+  return {
+      {.name = "solver",
+       .value = name_of(solvers, at(&Settings::solver)),
+       .doc = "*sbp*, *sal*, *ebp*, *eal* or *pdas*: the local law inside nonlinear Gauss-Seidel; *apgs*, the same "
+              "with momentum; *active_set*, sparse factorisations, without friction only; *interior_point*, the same "
+              "with friction; *auto*: [solvers.md](solvers.md)",
+       .described = true},
+      {.name = "law",
+       .value = name_of(schemes, at(&Settings::law)),
+       .doc = "*moreau* or *gap*: the contact law",
+       .described = true},
+      {.name = "restitution",
+       .value = number(at(&Material::restitution)),
+       .range = share,
+       .doc = "Newton's coefficient e of contacts without their own",
+       .described = true},
+      {.name = "friction",
+       .value = friction(at(&Material::friction)),
+       .range = {.lo = 0},
+       .reason = ", or `stick` for contacts that do not slip",
+       .doc = "Coulomb's coefficient mu of contacts without their own, or *stick*: no slip while in contact; where no "
+              "contact has any, grains have no spins",
+       .described = true},
+      {.name = "stick",
+       .value = {.kind = "", .read = [](Settings &s, Arguments &) { s.material.friction = stick; }},
+       .doc = "",
+       .described = true},
+      {.name = "e_t",
+       .value = number(at(&Material::e_t)),
+       .range = share,
+       .doc = "tangential restitution of contacts without their own; with friction only",
+       .described = true},
+      {.name = "material",
+       .value = {.kind = "I J and its numbers", .read = read_pair, .repeats = true},
+       .otherwise = "none",
+       .doc = "types I and J of atoms (or ranges, as 2\\*4, 2\\* or \\*), then what their contacts have of their own: "
+              "*friction* mu, *friction stick* or *stick*, *restitution* e, *e_t* e_t; of several that name a pair the "
+              "later ones hold",
+       .described = true},
+      {.name = "wall",
+       .value = {.kind = "plane x y z nx ny nz and its numbers",
+                 .read = [](Settings &s, Arguments &w) { s.walls.push_back(read_wall(w)); },
+                 .repeats = true},
+       .otherwise = "no walls",
+       .doc = "*plane* x y z nx ny nz: a point of the plane, a normal into the free side (any length but 0), then what "
+              "its contacts have of their own, as behind *material*",
+       .described = true},
+      {.name = "inertia",
+       .value = choice("inertia", {"sphere", "disc"}, at(&Settings::inertia)),
+       .otherwise = "*sphere*, in dimension 2 *disc*",
+       .doc = "*sphere* (2/5 m r^2), or *disc* (1/2 m r^2) in `dimension 2`; with friction only",
+       .described = true},
+      {.name = "accuracy",
+       .value = choice("accuracy", {"loose", "normal", "tight"}, at(&Settings::accuracy)),
+       .otherwise = "*normal*",
+       .doc = "*loose*, *normal* or *tight*: how good steps are where *tol*, *overlap* and *budget* are not given, "
+              "with *criterion natural*: 1e-2, 1e-3 and 10; 1e-3, 5e-4 and 30; 1e-4, 1e-4 and 300. *loose* is for grains "
+              "that fall and flow, *tight* for beds that must stand still ([what each buys](friction_accuracy.md))"},
+      {.name = "tol",
+       .value = number(at(&Settings::tol)),
+       .range = positive,
+       .reason = ": it is the value of the criterion at which a step is solved",
+       .otherwise = "1e-3; with *criterion paper* 1e-7",
+       .doc = "value of the criterion below which a step is solved: of the scene's own velocities with *criterion "
+              "natural*, in velocity units with *criterion paper*",
+       .described = true},
+      {.name = "criterion",
+       .value = choice("criterion", {"paper", "natural"}, at(&Settings::criterion)),
+       .otherwise = "*natural*",
+       .doc = "what *tol* is compared with. *criterion paper*: (42) of Barboteu & Dumont (2017), the mean over the "
+              "contacts, f_ID[3]; *criterion natural*: the natural map of all contacts over the norm of their "
+              "velocities without impulses, f_ID[7]",
+       .described = true},
+      {.name = "overlap",
+       .value = number(at(&Settings::overlap)),
+       .range = {.lo = 0, .hi = 1, .lo_is_in = false},
+       .reason = ": it is a share of the smaller radius of a contact",
+       .otherwise = "5e-4 with *criterion natural*, no such condition with *criterion paper*",
+       .doc = "of law *gap*: a step is solved only when no contact is driven deeper than this share of its own smaller "
+              "radius",
+       .described = true},
+      {.name = "budget",
+       .value = number(at(&Settings::budget)),
+       .range = {.lo = 0},
+       .reason = ": sweeps after which a step may be accepted, 0 for never",
+       .otherwise = "30 with friction and *criterion natural* (below 2000 contacts more: 60,000 visits of contacts), "
+                    "else 0",
+       .doc = "sweeps after which, or at *maxiter* if that is less, a step above *tol* is accepted if it is below 30 "
+              "*tol* and within *overlap*, f_ID[14]; 0: never"},
+      {.name = "maxiter",
+       .value = number(at(&Settings::maxiter)),
+       .range = {.lo = 1},
+       .doc = "iterations of a solve after which it is given up"},
+      {.name = "warmstart",
+       .value = yes_or_no(at(&Settings::warmstart)),
+       .doc = "*yes* or *no*: start from the impulses of the last step"},
+      {.name = "paper",
+       .value = {.kind = "yes or no",
+                 .read = [](Settings &s, Arguments &w) { if (w.yes_or_no()) follow_paper(s); }},
+       .otherwise = "*no*",
+       .doc = "*yes*: the settings of Barboteu & Dumont (2017), which later keywords override (so it comes first): "
+              "*solver pdas law moreau criterion paper tol 1e-7 warmstart no*"},
+      {.name = "rho",
+       .value = number(at(&Settings::rho)),
+       .range = positive,
+       .reason = start_with_default,
+       .otherwise = "4/9 (*sbp*, *sal*), 1 (*ebp*, *eal*)",
+       .doc = "parameter of *sbp*, *sal*, *ebp*, *eal*, a multiple of 1/W_nn",
+       .described = true},
+      {.name = "gamma",
+       .value = number(at(&Settings::gamma)),
+       .range = positive,
+       .reason = start_with_default,
+       .otherwise = "1",
+       .doc = "parameter of *pdas*, a multiple of 1/W_nn and, with friction, of 1/W_tt",
+       .described = true},
+      {.name = "theta",
+       .value = number(at(&Settings::theta)),
+       .range = share,
+       .doc = "of law *moreau*: contacts are sought at q + (1 - theta) dt v"},
+      {.name = "recovery",
+       .value = number(at(&Settings::recovery)),
+       .range = share,
+       .doc = "of law *gap*: share of an overlap given back per step (with friction of what is beyond 3e-5 of the "
+              "smaller radius)"},
+      {.name = "unconverged",
+       .value = choice("unconverged", {"ignore", "warn", "error"}, at(&Settings::unconverged)),
+       .doc = "*ignore*, *warn* or *error*: what to do about steps that are given up, say nothing, warn at the end of "
+              "a run, or stop it"},
+      {.name = "threads",
+       .value = number(at(&Settings::threads)),
+       .range = {.lo = 1, .hi = most_threads},
+       .reason = ": they are of each rank, and share its contacts",
+       .doc = "threads of each rank that share its contacts: [ranks.md](ranks.md#threads)",
+       .described = true},
+  };
 }
 
 }    // namespace
 
-void parse_keywords(Settings &settings, const std::vector<std::string> &words)
+const std::vector<Keyword> &keywords()
 {
-  Words rest(words);
-  std::set<std::string> given;
-  std::string last;
-  while (!rest.done()) {
-    const std::string keyword = rest.keyword();
-    const auto reader = readers().find(keyword);
-    if (reader == readers().end()) {
-      std::string choices;
-      for (const auto &[known, unused] : readers()) choices += (choices.empty() ? "" : ", ") + known;
-      fail("unknown keyword '", keyword, "': choose one of ", choices);
-    }
-    refuse_misplaced(keyword, last, given);
-    reader->second(settings, rest);
-    given.insert(keyword == "stick" ? "friction" : keyword);
-    last = keyword;
-  }
+  static const std::vector<Keyword> all = table();
+  return all;
+}
+
+std::string default_of(const Keyword &keyword)
+{
+  if (!keyword.otherwise.empty() || !keyword.value.write) return std::string(keyword.otherwise);
+  const std::string value = keyword.value.write(Settings{});
+  return keyword.value.number ? value : "*" + value + "*";
+}
+
+std::string Limits::text() const
+{
+  constexpr double all = std::numeric_limits<double>::max();
+  const std::string from = values::written(lo);
+  if (lo < -all) return "";
+  if (hi < all) return from + " to " + values::written(hi) + (lo_is_in ? "" : ", not " + from);
+  return (lo_is_in ? ">= " : "> ") + from;
 }
 
 }    // namespace nscd

@@ -2,10 +2,11 @@
 // What the user chooses, and the checks on it: one place for both doors.
 #pragma once
 
+#include "contact/material.hpp"
 #include "obstacle/plane.hpp"
+#include "settings/materials.hpp"
 #include "solver/solver.hpp"
 
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,45 +16,36 @@ namespace nscd {
 // Moment of inertia: 2/5 m r^2 of a sphere, 1/2 m r^2 of a disc.
 enum class Inertia { sphere, disc };
 
-// Friction coefficient of contacts that do not slip.
-constexpr double stick = std::numeric_limits<double>::infinity();
-
 enum class Unconverged { ignore, warn, error };
-Unconverged parse_unconverged(const std::string &word);
-const char *name(Unconverged policy);
-
-Stop parse_stop(const std::string &word);
 
 // How good the answers of steps are with criterion natural, where tol, overlap and budget are not given.
 enum class Accuracy { loose, normal, tight };
-Accuracy parse_accuracy(const std::string &word);
 
 struct Settings {
   std::string solver = "auto";
   std::string law = "gap";
-  double restitution = 0;        // Newton's e, 0..1
-  double friction = 0;           // Coulomb's mu of pairs, and of walls without their own; may be `stick`
-  double e_t = 0;                // tangential restitution, 0..1
-  std::optional<Inertia> inertia;  // none: disc in dimension 2, sphere otherwise
-  std::optional<Accuracy> accuracy;   // none: normal
+  Material material{};             // of contacts where pair or wall have none of their own
+  std::vector<PairMaterial> pairs{};   // of later ones what they give holds
+  std::optional<Inertia> inertia{};    // none: disc in dimension 2, sphere otherwise
+  std::optional<Accuracy> accuracy{};  // none: normal
   // On the criterion. None: natural, relative to the scene's own velocities; a tol of criterion paper is in m/s.
-  std::optional<double> tol;
-  std::optional<Stop> criterion;
-  std::optional<double> overlap;   // of the smallest radius: what a contact may be driven into another in a step
+  std::optional<double> tol{};
+  std::optional<Stop> criterion{};
+  std::optional<double> overlap{};  // of the smallest radius: what a contact may be driven into another in a step
   int maxiter = 1000;
-  std::optional<int> budget;     // sweeps after which a step with friction may be accepted above tol; 0: never
+  std::optional<int> budget{};   // sweeps after which a step with friction may be accepted above tol; 0: never
   bool warmstart = true;
-  std::optional<double> rho;     // multiple of 1/W_nn; none: the solver's own default
-  std::optional<double> gamma;
+  std::optional<double> rho{};   // multiple of 1/W_nn; none: the solver's own default
+  std::optional<double> gamma{};
   double theta = 0.5;            // law moreau
   double recovery = 0.2;         // law gap: share of an overlap given back per step, speed-limited
   Unconverged unconverged = Unconverged::warn;
   int threads = 1;               // of each rank
-  std::vector<Plane> walls;
+  std::vector<Plane> walls{};
 
-  double wall_friction(std::size_t wall) const { return walls[wall].friction.value_or(friction); }
-  // Whether any contact has friction.
+  // Whether any contact has friction; whether any gives back what it stops.
   bool frictional() const;
+  bool restitutive() const;
 };
 
 // Reads `keyword value ...` as fix nscd takes them; raises Error for an unknown keyword, one that is given twice or

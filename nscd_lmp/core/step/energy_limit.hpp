@@ -2,11 +2,11 @@
 // Keeps Newton's law of impact with friction, and frictional solves that were given up, from making energy.
 //
 // With e = e_t on all contacts the law takes energy, always (Leine & van de Wouw 2008): the impulses P and the
-// velocities u+ + e u- obey P.(u+ + e u-) <= 0. With e != e_t that bound is lost, and where one impact drives another
-// contact the energy may rise (Kane & Levinson 1985). The inelastic solution (e = e_t = 0) always takes energy. Both
-// solutions lie in the convex cone of friction, and so does every blend of the two; the work of the contacts is a
-// quadratic function of the share. So a solution that would make energy is blended with the inelastic one until it
-// makes none.
+// velocities u+ + e u- obey P.(u+ + e u-) <= 0. With e != e_t, or contacts of different e, that bound is lost, and
+// where one impact drives another contact the energy may rise (Kane & Levinson 1985). The inelastic solution (e = e_t =
+// 0) always takes energy. Both solutions lie in the convex cone of friction, and so does every blend of the two; the
+// work of the contacts is a quadratic function of the share. So a solution that would make energy is blended with the
+// inelastic one until it makes none.
 //
 // An unsolved problem, given up after maxiter, can show any energy. It is blended with no impulses at all
 // until the contacts raise the kinetic energy above that of the free motion no more: they give way, but throw nothing.
@@ -27,9 +27,9 @@ class EnergyLimit {
   // Velocities that the work of the contacts is counted from: those at the start of the step, or of the solve.
   enum class From { step, solve };
 
-  // Solves for the first `count` contacts. `newton`: their biases hold restitution e != e_t, so they may be solved
-  // twice; they then start from no impulses, or `from` is the step. `gives_back`: their biases give overlaps back,
-  // which may do work. `solver` returns whether it solved the problem, `go_on` too, from where that left it.
+  // Solves for the first `count` contacts. `newton`: their biases hold restitutions that may make energy, so they may
+  // be solved twice; they then start from no impulses, or `from` is the step. `gives_back`: their biases give overlaps
+  // back, which may do work. `solver` returns whether it solved the problem, `go_on` too, from where that left it.
   // Returns whether the solution had to be blended.
   bool solve(State &state, std::size_t count, bool newton, From from, bool gives_back,
              const std::function<bool()> &solver, const std::function<bool()> &go_on);

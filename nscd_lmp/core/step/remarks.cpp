@@ -95,8 +95,8 @@ std::vector<std::string> Remarks::take(const Settings &s, bool looks_ahead)
                             "use criterion natural, or a smaller tol"));
   if (impacts_left_ > 0)
     said.push_back(sentence("in ", impacts_left_, " of ", steps_, " steps more impacts followed each other than law ",
-                            s.law, " takes one after another, and the rest gave no energy back (restitution ",
-                            s.restitution, "): use law moreau, or a smaller timestep if the grains do not touch yet"));
+                            s.law, " takes one after another, and the rest gave no energy back: use law moreau, or a ",
+                            "smaller timestep if the grains do not touch yet"));
   if (overlap_ratio_ > std::max(overlap_worth_saying, s.overlap.value_or(0)))
     said.push_back(sentence("grains overlap by up to ", rounded(overlap_ratio_), " of the smaller radius: ",
                             looks_ahead ? "start without overlap, lower tol, or move obstacles by less a step"
@@ -104,7 +104,7 @@ std::vector<std::string> Remarks::take(const Settings &s, bool looks_ahead)
   if (!looks_ahead && move_ratio_ > move_worth_saying)
     said.push_back(sentence("grains move by up to ", rounded(move_ratio_), " of the smallest radius in a step, and ",
                             "law ", s.law, " does not see them pass each other: use law gap or a smaller timestep"));
-  if (looks_ahead && s.restitution == 0 && passing_ > std::max(steps_of_a_flow, steps_ / 2))
+  if (looks_ahead && !s.restitutive() && passing_ > std::max(steps_of_a_flow, steps_ / 2))
     said.push_back(told_passing(passing_, steps_, std::sqrt(passed2_ / pushed_)));
   if (torque_)
     said.push_back("torques act on grains without friction, which have no spins: give the fix a friction (0.0001 will "

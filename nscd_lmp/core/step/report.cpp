@@ -3,7 +3,9 @@
 
 #include "scene/drifted.hpp"
 #include "scene/slides.hpp"
+#include "settings/keyword.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 namespace nscd {
@@ -66,32 +68,48 @@ static std::string describe_solver(const Settings &s)
   return text.str();
 }
 
-static std::string coefficient(double mu)
+// What contacts have of a part of their material: those without their own, pairs of types, walls.
+static std::string of_contacts(const Settings &s, std::string_view name)
 {
-  if (mu == stick) return "stick";
+  const auto named = [&](const MaterialPart &part) { return part.name == name; };
+  const std::size_t part = std::size_t(std::find_if(material_parts.begin(), material_parts.end(), named) -
+                                       material_parts.begin());
   std::ostringstream text;
-  text << mu;
+  const auto add = [&](double value) -> std::ostream & { return value == stick ? text << "stick" : text << value; };
+  add(s.material.*material_parts[part].value);
+  for (const PairMaterial &pair : s.pairs)
+    if (pair.own.has(part)) text << ", ", add(pair.own.value(part)) << " of types " << pair.types;
+  for (std::size_t k = 0; k < s.walls.size(); ++k)
+    if (s.walls[k].own.has(part)) text << ", ", add(s.walls[k].own.value(part)) << " on wall " << k + 1;
   return text.str();
 }
 
 static std::string describe_model(const Settings &s, const Friction &friction)
 {
   if (friction.model == Model::frictionless) return "frictionless: 1 unknown per contact, no spins";
-  std::string text = "friction " + coefficient(s.friction);
-  for (std::size_t k = 0; k < s.walls.size(); ++k)
-    if (s.walls[k].friction) text += ", " + coefficient(*s.walls[k].friction) + " on wall " + std::to_string(k + 1);
-  text += friction.model == Model::planar ? "; planar: 2 unknowns per contact, spins about z"
-                                          : "; spatial: 3 unknowns per contact, spins";
-  return text + (friction.spin_response == disc_spin_response ? " of discs" : " of spheres");
+  const std::string unknowns = friction.model == Model::planar ? "; planar: 2 unknowns per contact, spins about z"
+                                                               : "; spatial: 3 unknowns per contact, spins";
+  return "friction " + of_contacts(s, "friction") + unknowns +
+      (friction.spin_response == disc_spin_response ? " of discs" : " of spheres");
 }
 
 static std::string describe_restitution(const Settings &s)
 {
-  if (s.restitution == 0 && s.e_t == 0) return "no restitution term";
-  std::ostringstream text;
-  text << "impacts with restitution " << s.restitution;
-  if (s.frictional()) text << ", tangential " << s.e_t;
-  return text.str();
+  if (!s.restitutive()) return "no restitution term";
+  const std::string text = "impacts with restitution " + of_contacts(s, "restitution");
+  return s.frictional() ? text + ", tangential " + of_contacts(s, "e_t") : text;
+}
+
+// Keywords that have no words above and are not what they are by default, as a script gives them.
+static std::string describe_others(const Settings &s)
+{
+  std::string text;
+  for (const Keyword &keyword : keywords()) {
+    if (keyword.described || !keyword.value.write) continue;
+    const std::string value = keyword.value.write(s);
+    if (!value.empty() && value != keyword.value.write({})) text += "; " + std::string(keyword.name) + " " + value;
+  }
+  return text;
 }
 
 static std::string describe_ranks(const Halo *halo, int threads)
@@ -118,7 +136,7 @@ std::string describe(const Step &step)
        << ", " << s.walls.size()
        << (s.walls.size() == 1 ? " wall" : " walls")
        << "; " << describe_model(s, step.state().friction) << "; " << describe_restitution(s)
-       << "; " << describe_ranks(step.halo(), s.threads);
+       << describe_others(s) << "; " << describe_ranks(step.halo(), s.threads);
   return text.str();
 }
 

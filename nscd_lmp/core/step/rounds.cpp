@@ -2,6 +2,7 @@
 #include "step/rounds.hpp"
 
 #include "base/hot.hpp"
+#include "scene/contact_materials.hpp"
 #include "scene/copies.hpp"
 #include "scene/slides.hpp"
 #include "solver/across_ranks.hpp"
@@ -42,7 +43,7 @@ void Rounds::begin()
   impacts_left_ = false;
   state_.table.close_impacts();
   state_.courses.clear();
-  place_slides(state_, 0);
+  place_materials(state_, 0);
   if (state_.exec.halo) state_.exec.halo->share_contacts(state_.motion.bodies, state_.table.contacts);
   if (!impacts_first()) return;
   free_bodies_ = state_.motion.bodies;
@@ -75,7 +76,7 @@ void Rounds::start(const Next &now)
 // Returns whether the contacts that are there are solved, or given up.
 bool Rounds::solve(const Next &now)
 {
-  const Solves::Part part{state_.table.size(), scheme_.constants.e, scheme_.constants.e_t, free_norm_};
+  const Solves::Part part{state_.table.size(), scheme_.constants.restitution, free_norm_};
   calmed_ = {};
   if (now.effort == Effort::brief) return solves_.sweep_briefly(part, now.sweeps);
   solves_.solve(part, EnergyLimit::From::step);
@@ -101,7 +102,7 @@ Rounds::Next Rounds::look_on(const Next &now, bool solved, const PairList &pairs
 NSCD_HOT void Rounds::start_contacts(std::size_t first, bool goes_on)
 {
   scheme_.set_bias(state_, first);
-  set_tangential_bias(state_, first, scheme_.constants.e_t);
+  set_tangential_bias(state_, first, scheme_.constants.restitution);
   const double added = keep_free_velocities(state_, first, state_.table.size());
   free_norm_ = std::hypot(goes_on ? free_norm_ : 0, added);
   bound_approach(state_, first);
@@ -114,7 +115,7 @@ NSCD_HOT void Rounds::start_contacts(std::size_t first, bool goes_on)
 void Rounds::start_turned()
 {
   scheme_.set_bias(state_, 0);
-  set_tangential_bias(state_, 0, scheme_.constants.e_t);
+  set_tangential_bias(state_, 0, scheme_.constants.restitution);
   bound_approach(state_, 0);
 }
 
@@ -130,7 +131,7 @@ bool Rounds::promote(const PairList &pairs)
     else look_at_near(state_);
   });
   if (sum_everywhere(state_, double(more)) == 0) return false;
-  place_slides(state_, before);
+  place_materials(state_, before);
   if (state_.exec.halo) state_.exec.halo->share_contacts(state_.motion.bodies, state_.table.contacts);
   return true;
 }
@@ -141,7 +142,7 @@ void Rounds::resolve_impacts_first(Reason reason)
     solves_.take_back();
     state_.motion.bodies = free_bodies_;
     state_.motion.spins = free_spins_;
-    place_slides(state_, 0);
+    place_materials(state_, 0);
   }
   const Settings &settings = state_.in.settings;
   for (Contact &c : state_.table.contacts) c.impulse = 0;
@@ -150,8 +151,7 @@ void Rounds::resolve_impacts_first(Reason reason)
     const double norm = keep_free_velocities(state_, 0, count);
     bound_approach_of_impacts(state_, count);
     solves_.begin_budget();
-    const Settings &s = state_.in.settings;
-    solves_.solve({count, s.restitution, s.e_t, norm, tol}, EnergyLimit::From::solve);
+    solves_.solve({count, true, norm, tol}, EnergyLimit::From::solve);
   });
 }
 

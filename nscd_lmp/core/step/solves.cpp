@@ -81,7 +81,7 @@ bool Solves::sweep_briefly(const Part &part, int sweeps)
 void Solves::solve(const Part &part, EnergyLimit::From from)
 {
   share_among_threads(part.contacts);
-  const bool newton = state_.friction.model != Model::frictionless && part.e != part.e_t;
+  const bool newton = part.restitution && state_.in.materials.may_make_energy();
   const bool before = std::exchange(outcome_.accepted, false);   // of impacts
   const auto solve_all = [&] { return solve_part(part, options_.maxiter); };
   const auto go_on = [&] {
@@ -117,8 +117,9 @@ SolverReport Solves::solve_problem(Problem &problem, const SolverOptions &option
 Problem Solves::problem_of(const Part &part)
 {
   const std::span contacts = std::span(state_.table.contacts).first(part.contacts);
-  Problem problem{state_.motion.bodies, contacts, part.e, part.norm, workspace_, sliding(state_, part.e_t),
-                  state_.exec.halo};
+  Problem problem{state_.motion.bodies, contacts, part.norm, workspace_, sliding(state_), state_.exec.halo};
+  const std::span numbers(state_.table.material);
+  if (part.restitution) problem.restitution = {numbers.first(part.contacts), state_.in.materials.all()};
   problem.round_off = state_.scales.round_off;
   problem.infos = std::span(state_.table.infos).first(part.contacts);
   if (settings_.overlap) problem.per_approach = std::span(state_.table.per_approach).first(part.contacts);

@@ -23,7 +23,7 @@ class Solves {
   // The contacts of one solve.
   struct Part {
     std::size_t contacts;  // the first ones of the step
-    double e, e_t;         // restitution that the biases contain
+    bool restitution;      // whether the biases hold it
     double norm;           // of free velocities and biases
     double tol = 1;        // of the step's
   };

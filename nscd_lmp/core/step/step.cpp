@@ -22,9 +22,10 @@ static double seconds(Clock::time_point from, Clock::time_point to)
   return std::chrono::duration<double>(to - from).count();
 }
 
-Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *ranks) :
-    settings_(checked(settings, dimension)), scheme_(find_scheme(settings_.law).make(settings_)),
-    state_{.in = {.settings = settings_, .dimension = dimension}},
+Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *ranks, int types) :
+    settings_(checked(settings, dimension)), materials_(settings_, types),
+    scheme_(find_scheme(settings_.law).make(settings_)),
+    state_{.in = {.settings = settings_, .materials = materials_, .dimension = dimension}},
     halo_(ranks && ranks->count() > 1 ? std::make_unique<Halo>(*ranks) : nullptr),
     prediction_(scheme_->constants.prediction), look_ahead_(find_scheme(settings_.law).looks_ahead ? 1 : 0),
     solves_(state_, settings_, std::move(custom), looks_ahead()),
@@ -39,6 +40,7 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
   const Inertia inertia = settings_.inertia.value_or(dimension == 2 ? Inertia::disc : Inertia::sphere);
   state_.friction.model = choose_model(settings_, dimension);
   state_.table.open_slides(state_.friction.model);
+  if (settings_.restitutive()) state_.table.material.open();
   state_.friction.spin_response = inertia == Inertia::disc ? disc_spin_response : sphere_spin_response;
 }
 
@@ -55,6 +57,7 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
 {
   const auto start = Clock::now();
   if (!(dt > 0 && std::isfinite(dt))) fail("the timestep is ", dt, ": it must be > 0");
+  if (materials_.by_type() && grains.owned > 0 && !grains.type) fail("materials differ by type, and atoms have none");
   state_.in.dt = dt;
   state_.scales.lasting_moment = scheme_->constants.moment * dt;
   state_.in.grains = grains;

@@ -55,7 +55,8 @@ class Step {
   // `dimension`: 3, or 2 for grains in a plane z = const; with the settings it decides how many unknowns a contact has.
   // Raises Error for bad settings, or for settings that do not fit the dimension.
   // `ranks`: those that share the scene; null for one. They must outlive the step.
-  explicit Step(const Settings &settings, CustomSolver custom = {}, int dimension = 3, Ranks *ranks = nullptr);
+  explicit Step(const Settings &settings, CustomSolver custom = {}, int dimension = 3, Ranks *ranks = nullptr,
+                int types = 1);
   Step(const Step &) = delete;
   Step &operator=(const Step &) = delete;
 
@@ -128,6 +129,7 @@ class Step {
   void write_report(const Seen &seen, const Rounds::Result &rounds, const Tally &tally, double seconds);
 
   const Settings settings_;
+  const Materials materials_;
   const std::unique_ptr<Scheme> scheme_;
   State state_;
   const std::unique_ptr<Halo> halo_;   // none on one rank

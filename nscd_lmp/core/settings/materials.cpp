@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "settings/materials.hpp"
+
+#include "base/error.hpp"
+#include "settings/settings.hpp"
+
+#include <algorithm>
+
+namespace nscd {
+
+namespace {
+
+bool alike(const Material &a, const Material &b)
+{
+  return std::all_of(material_parts.begin(), material_parts.end(),
+                     [&](const MaterialPart &part) { return a.*part.value == b.*part.value; });
+}
+
+bool has(const TypeRange &range, int type) { return type >= range.first && (range.last == 0 || type <= range.last); }
+
+bool names(const PairMaterial &pair, int a, int b)
+{
+  return (has(pair.i, a) && has(pair.j, b)) || (has(pair.i, b) && has(pair.j, a));
+}
+
+void require_types(const TypeRange &range, int types)
+{
+  for (const int type : {range.first, range.last})
+    if (type > types)
+      fail("material: there is no atom type ", type, ", the largest is ", types, ": name types from 1 to ", types);
+}
+
+}    // namespace
+
+Materials::Materials(const Settings &s, int types) : types_(types)
+{
+  require_pairs_named(s);
+  for (int a = 0; a <= types; ++a)
+    for (int b = 0; b <= types; ++b) {
+      Material material = s.material;
+      for (const PairMaterial &pair : s.pairs)
+        if (a > 0 && b > 0 && names(pair, a, b)) material = pair.own.over(material);
+      pairs_.push_back(number_of(a > 0 && b > 0 ? material : s.material));
+      by_type_ |= a > 0 && b > 0 && pairs_.back() != pairs_[std::size_t(types) + 2];   // pair 1 1
+    }
+  for (const Plane &wall : s.walls) walls_.push_back(number_of(wall.own.over(s.material)));
+  for (const Material &material : all_) {
+    may_make_energy_ |= material.restitution != all_[0].restitution;
+    may_make_energy_ |= s.frictional() && material.restitution != material.e_t;
+  }
+}
+
+MaterialNumber Materials::number_of(const Material &material)
+{
+  const auto same = [&](const Material &other) { return alike(material, other); };
+  const auto found = std::find_if(all_.begin(), all_.end(), same);
+  const std::size_t number = std::size_t(found - all_.begin());
+  if (number > std::numeric_limits<MaterialNumber>::max()) fail("there are more than ", number, " different materials");
+  if (found == all_.end()) all_.push_back(material);
+  return MaterialNumber(number);
+}
+
+void Materials::require_pairs_named(const Settings &s) const
+{
+  for (const PairMaterial &pair : s.pairs) {
+    require_types(pair.i, types_);
+    require_types(pair.j, types_);
+  }
+  const auto named = [&](int a, int b) {
+    return std::any_of(s.pairs.begin(), s.pairs.end(), [&](const PairMaterial &pair) { return names(pair, a, b); });
+  };
+  for (int a = 1; a <= types_; ++a)
+    for (int b = a + 1; b <= types_; ++b)
+      if (named(a, a) && named(b, b) && !named(a, b))
+        fail("grains of types ", a, " and ", b, " have materials of their own, and the pair of the two has none: give ",
+             "`material ", a, " ", b, "` too");
+}
+
+}    // namespace nscd

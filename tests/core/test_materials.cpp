@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Which numbers a contact has: of its pair of types, of its wall, or of all contacts.
+#include "check.hpp"
+#include "scene.hpp"
+#include "scene/contact_materials.hpp"
+#include "step/report.hpp"
+
+using nscd::Material;
+using nscd::Materials;
+
+static Material of_pair(const std::string &words, int types, int a, int b)
+{
+  const Materials materials(settings(words), types);
+  return materials[materials.of_pair(a, b)];
+}
+
+TEST(a_pair_has_what_names_it_and_the_rest_from_all_contacts)
+{
+  const std::string words = "friction 0.5 restitution 0.2 material 1 2 friction 0.1 material 2 2 restitution 0.9 stick";
+  CHECK(of_pair(words, 2, 1, 1).friction == 0.5 && of_pair(words, 2, 1, 1).restitution == 0.2);
+  for (const auto &[a, b] : {std::pair{1, 2}, std::pair{2, 1}})
+    CHECK(of_pair(words, 2, a, b).friction == 0.1 && of_pair(words, 2, a, b).restitution == 0.2);
+  CHECK(of_pair(words, 2, 2, 2).friction == nscd::stick && of_pair(words, 2, 2, 2).restitution == 0.9);
+}
+
+TEST(ranges_of_types_are_those_of_lammps)
+{
+  for (const std::string all : {"*", "1*", "*4", "1*4"})
+    for (int a = 1; a <= 4; ++a) CHECK(of_pair("material " + all + " 3 friction 1", 4, a, 3).friction == 1);
+  CHECK(of_pair("material 2*3 4 friction 1", 4, 1, 4).friction == 0);
+  CHECK(of_pair("material 2*3 4 friction 1", 4, 4, 3).friction == 1);
+  CHECK(of_pair("material * * friction 1 material 2 3 friction 2", 3, 3, 2).friction == 2);   // the later one
+  CHECK(of_pair("material * * friction 1 restitution 0.5 material 2 3 friction 2", 3, 3, 2).restitution == 0.5);
+}
+
+TEST(types_are_looked_at_only_where_pairs_differ)
+{
+  CHECK(!Materials(settings("friction 0.5 wall plane 0 0 0 0 0 1 friction 0.1"), 3).by_type());
+  CHECK(!Materials(settings("material * * friction 0.5"), 3).by_type());
+  CHECK(Materials(settings("material 1 1 friction 0.5"), 2).by_type());
+  const Materials walls(settings("friction 0.5 wall plane 0 0 0 0 0 1 wall plane 0 0 9 0 0 -1 restitution 0.5"), 1);
+  CHECK(walls.of_wall(0) == walls.of_pairs() && walls[walls.of_wall(1)].restitution == 0.5);
+  CHECK(walls[walls.of_wall(1)].friction == 0.5 && walls.all().size() == 2);
+}
+
+TEST(restitutions_that_may_make_energy_are_known)
+{
+  const auto may = [](const std::string &words) { return Materials(settings(words), 2).may_make_energy(); };
+  CHECK(!may("restitution 0.5") && !may("friction 0.5 restitution 0.5 e_t 0.5"));
+  CHECK(may("friction 0.5 restitution 0.5") && may("restitution 0.5 material 1 1 restitution 0"));
+  CHECK(may("restitution 0.5 wall plane 0 0 0 0 0 1 restitution 0.4"));
+  CHECK(!may("friction 0.5 material 1 1 friction 0.1"));
+}
+
+TEST(materials_that_cannot_be_are_refused)
+{
+  CHECK_ERROR(settings("material 1"), "keyword material needs a value");
+  CHECK_ERROR(settings("material 1 2"), "behind the two types stand friction, restitution or e_t");
+  CHECK_ERROR(settings("material 1 2 tol 1e-3"), "behind the two types stand friction, restitution or e_t");
+  for (const char *types : {"0", "-1", "x", "1.5", "**", "0*2"})
+    CHECK_ERROR(settings("material 1 " + std::string(types) + " friction 1"), "names no types of atoms");
+  CHECK_ERROR(settings("material 3*2 1 friction 1"), "the range '3*2' has no types in it");
+  CHECK_ERROR(nscd::checked(settings("material 1 2* friction -1")), "material 1 2*: friction = -1 must be >= 0");
+  CHECK_ERROR(nscd::checked(settings("material 1 1 restitution 2")), "restitution = 2 is outside [0, 1]");
+  CHECK_ERROR(nscd::checked(settings("material 1 1 e_t 0.5")), "e_t = 0.5 has no effect without friction");
+  CHECK_ERROR(nscd::checked(settings("wall plane 0 0 0 0 0 1 restitution -1")), "wall 1: restitution = -1");
+  CHECK_ERROR(Materials(settings("material 1 3 friction 1"), 2), "there is no atom type 3, the largest is 2");
+  CHECK_ERROR(Materials(settings("material 1 1 friction 1 material 2 2 friction 2"), 2), "give `material 1 2` too");
+  CHECK_ERROR(nscd::Step(settings("material 2 2 friction 1")), "there is no atom type 2");
+}
+
+// A scene of types whose atoms say nothing of theirs would be a scene of others.
+TEST(types_that_are_needed_have_to_be_there)
+{
+  Scene scene;
+  scene.add({0, 0, 0}, 1);
+  nscd::Step step(settings("material 1 1 friction 1 material 1 2 friction 2"), {}, 3, nullptr, 2);
+  CHECK_ERROR(scene.advance(step, 1e-3), "materials differ by type");
+}
+
+TEST(the_description_names_the_materials)
+{
+  const std::string words = "friction 0.3 restitution 0.5 material 1 2* stick wall plane 0 0 0 0 0 1 restitution 0.1";
+  const std::string text = nscd::describe(nscd::Step(settings(words), {}, 3, nullptr, 2));
+  for (const char *part : {"friction 0.3, stick of types 1 2*", "restitution 0.5, 0.1 on wall 1", "tangential 0"})
+    check::says(__FILE__, __LINE__, text, part);
+}
