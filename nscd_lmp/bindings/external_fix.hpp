@@ -4,7 +4,7 @@
 
 #include "library.hpp"
 #include "list_reach.hpp"
-#include "obstacle/periodic_walls.hpp"
+#include "obstacle/obstacle.hpp"
 #include "python_ranks.hpp"
 #include "step/report.hpp"
 #include "step/step.hpp"

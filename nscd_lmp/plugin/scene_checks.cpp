@@ -2,7 +2,6 @@
 #include "scene_checks.hpp"
 
 #include "base/error.hpp"
-#include "obstacle/periodic_walls.hpp"
 #include "scene/bonded.hpp"
 
 #include <atom.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "check.hpp"
+#include "obstacle/plane.hpp"
 #include "scene.hpp"
 #include "settings/keyword.hpp"
 #include "step/report.hpp"
@@ -7,6 +8,11 @@
 #include <cmath>
 
 static nscd::Settings checked(const std::string &keywords) { return nscd::checked(settings(keywords)); }
+
+static const nscd::Plane &plane(const nscd::Settings &s, std::size_t wall)
+{
+  return dynamic_cast<const nscd::Plane &>(*s.walls[wall].shape);
+}
 
 TEST(keywords_set_what_they_name)
 {
@@ -16,7 +22,8 @@ TEST(keywords_set_what_they_name)
   CHECK(s.solver == "sal" && s.law == "moreau" && s.maxiter == 7 && !s.warmstart);
   CHECK(s.material.restitution == 0.5 && s.tol == 1e-9 && s.rho == 0.25 && s.theta == 0.75 && s.recovery == 0.1);
   CHECK(!s.gamma && s.unconverged == nscd::Unconverged::error);
-  CHECK(s.walls.size() == 2 && s.walls[0].point[1] == 2 && s.walls[0].normal[2] == 4 && s.walls[1].normal[1] == 1);
+  CHECK(s.walls.size() == 2 && plane(s, 0).point()[1] == 2 && plane(s, 0).normal()[2] == 1);
+  CHECK(plane(s, 1).normal()[1] == 1);
   CHECK(settings("solver pdas gamma 2").gamma == 2);
 }
 
@@ -80,7 +87,7 @@ TEST(what_a_wall_has_already_is_refused_behind_it)
 TEST(numbers_are_those_of_lammps)
 {
   CHECK(settings("restitution +0.5").material.restitution == 0.5 && settings("maxiter +7").maxiter == 7);
-  CHECK(settings("wall plane +0 -0 +.5 0 0 +1e0").walls[0].point[2] == 0.5);
+  CHECK(plane(settings("wall plane +0 -0 +.5 0 0 +1e0"), 0).point()[2] == 0.5);
   for (const char *wrong : {"+", "++0.5", "+-0.5", "-+0.5", "+ 0.5"})
     CHECK_ERROR(settings("restitution " + std::string(wrong)), "is not a number");
 }
@@ -147,9 +154,9 @@ TEST(a_parameter_of_another_solver_is_refused)
 
 TEST(wall_normals_become_unit_vectors)
 {
-  const nscd::Plane wall = checked("wall plane 0 0 0 3 0 4").walls[0];
-  CHECK_NEAR(wall.normal[0], 0.6, 1e-16);
-  CHECK_NEAR(wall.normal[2], 0.8, 1e-16);
+  const nscd::Settings s = checked("wall plane 0 0 0 3 0 4");
+  CHECK_NEAR(plane(s, 0).normal()[0], 0.6, 1e-16);
+  CHECK_NEAR(plane(s, 0).normal()[2], 0.8, 1e-16);
 }
 
 TEST(walls_without_a_direction_or_a_place_are_refused)

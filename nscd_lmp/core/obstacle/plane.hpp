@@ -2,28 +2,28 @@
 // A plane wall: the half-space behind it is solid.
 #pragma once
 
-#include "contact/contact.hpp"
-#include "contact/material.hpp"
+#include "obstacle/obstacle.hpp"
 
 namespace nscd {
 
-// `point` on the plane, `normal` into the free side (any length; made unit by Settings).
-struct Plane {
-  double point[3];
-  double normal[3];
-  OwnMaterial own{};   // what it has not is that of contacts without a material of their own
-};
+class Plane final : public ObstacleOf<Plane> {
+ public:
+  // `normal` points into the free side and has any length but 0; raises Error otherwise. `name` is "wall 2".
+  Plane(const double (&point)[3], const double (&normal)[3], const std::string &name);
 
-// n.x - offset is the height above the plane, m.
-struct Height {
-  alignas(vec4_alignment) Vec4 normal;
-  double offset;
-  explicit Height(const Plane &plane) :
-      normal{plane.normal[0], plane.normal[1], plane.normal[2], 0},
-      offset(dot(normal, Vec4{plane.point[0], plane.point[1], plane.point[2], 0}))
-  {
-  }
-  double of(const Vec4 &centre) const { return dot(normal, centre) - offset; }
+  const Vec4 &normal() const { return normal_; }   // unit
+  const Vec4 &point() const { return point_; }
+  double distance(const Vec4 &centre) const { return dot(normal_, centre) - offset_; }
+
+  Touch at(const Vec4 &centre, double radius, int feature) const override;
+  void require_planar(const std::string &name) const override;
+  // Its normal has to be perpendicular to every edge along which the box is periodic.
+  void require_repeats(const std::string &name, const BoxEdges &box) const override;
+
+ private:
+  alignas(vec4_alignment) Vec4 normal_;
+  alignas(vec4_alignment) Vec4 point_;
+  double offset_;
 };
 
 }    // namespace nscd

@@ -11,7 +11,7 @@ namespace nscd {
 NSCD_INLINE MaterialNumber material_of(const State &s, const Candidate &c)
 {
   const Materials &materials = s.in.materials;
-  if (is_wall(c)) return materials.of_wall(wall_index(c));
+  if (is_wall(c)) return materials.of_wall(wall_of(c.atom_j));
   if (!materials.by_type()) return materials.of_pairs();
   return materials.of_pair(s.in.grains.type[c.atom_i], s.in.grains.type[c.atom_j]);
 }

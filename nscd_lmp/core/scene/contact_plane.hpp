@@ -5,6 +5,7 @@
 #include "base/hot.hpp"
 #include "contact/moment.hpp"
 #include "scene/drift_of.hpp"
+#include "scene/gap.hpp"
 #include "scene/state.hpp"
 
 #include <algorithm>
@@ -56,6 +57,18 @@ inline void take_plane(State &s, std::size_t k, const Vec4 &there)
   const Turned plane = turned(start, std::sqrt(dot(start, start)), there - start);
   c.normal = plane.normal;
   info.curve = plane.curve;
+  info.speed_before = dot(c.normal, start_velocity(s, c.i) - start_velocity(s, c.j)) + normal_drift(s, k);
+}
+
+// Contact k takes its plane where its bodies are at the start of the step.
+inline void take_start_plane(State &s, std::size_t k)
+{
+  ContactInfo &info = s.table.infos[k];
+  if (info.atom_j >= 0) return take_plane(s, k, separation_at_start(s, info));
+  Contact &c = s.table.contacts[k];
+  const Candidate wall{info.atom_i, info.atom_j};
+  c.normal = touch_of(s.atoms.spheres[info.atom_i], wall, s.obstacles.sought(wall_of(info.atom_j))).normal;
+  info.curve = 0;
   info.speed_before = dot(c.normal, start_velocity(s, c.i) - start_velocity(s, c.j)) + normal_drift(s, k);
 }
 

@@ -3,7 +3,7 @@
 
 #include "scene/contact_geometry.hpp"
 #include "scene/contact_plane.hpp"
-#include "scene/drifted.hpp"
+#include "scene/gap.hpp"
 
 #include <optional>
 
@@ -50,12 +50,6 @@ NSCD_HOT void filter_pairs(State &s, const PairList &pairs)
     }
   }
   s.search.found_count = kept;
-}
-
-NSCD_INLINE double gap_of(const Sphere &a, const Sphere &b)
-{
-  const Vec4 separation = a.centre - b.centre;
-  return std::sqrt(dot(separation, separation)) - a.radius - b.radius;
 }
 
 // A grain can be no contact of itself, so a box that is narrower than a grain would hold an overlap that nothing sees.
@@ -128,8 +122,7 @@ NSCD_HOT void watch_unforeseen(State &s)
   for (std::size_t k = 0; k < count; ++k) {
     const Candidate c = s.search.touching[k];
     const Sphere &a = s.atoms.spheres[c.atom_i], &b = s.atoms.spheres[c.atom_j];
-    const Vec4 separation = a.centre - b.centre;
-    const double distance = std::sqrt(dot(separation, separation)), gap = distance - a.radius - b.radius;
+    const auto [separation, distance, gap] = apart(a, b);
     const int i = s.atoms.owner[c.atom_i], j = s.atoms.owner[c.atom_j];
     Vec4 parting = s.motion.bodies[i] - s.motion.bodies[j];
     if (drifts) parting += drift_of(s, c, separation / distance);
@@ -153,17 +146,34 @@ double carried_to_wall(const State &s, int i)
   return s.drift.of.empty() ? 0 : s.in.dt * length(without_fourth(s.drift.of[i]));
 }
 
+// Calls f(i, touch, extra) for what a wall's features and grains are apart by no more than `watch`; both that and reach
+// grow by `extra`, what the box carries the grain and the wall moves, m.
+template <class F>
+void for_each_near(State &s, int number, double watch, F f)
+{
+  const Obstacle &wall = s.obstacles.sought(number);
+  const std::size_t count = std::size_t(s.in.grains.owned);
+  if (count == 0) return;
+  s.search.distances.resize(count);
+  wall.distances({&s.atoms.spheres[0].centre, sizeof(Sphere), count}, s.search.distances.data());
+  const double comes_near = s.in.dt * wall.fastest();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Sphere &grain = s.atoms.spheres[i];
+    const double extra = carried_to_wall(s, int(i)) + comes_near;
+    if (s.search.distances[i] - grain.radius > watch + extra || s.motion.bodies[i][3] == 0) continue;
+    s.search.touches.clear();
+    wall.touch(grain.centre, grain.radius, watch + extra, s.search.touches);
+    for (const Touch &touch : s.search.touches) f(int(i), touch, extra);
+  }
+}
+
 void sort_wall(State &s, int wall)
 {
-  const Height height(s.in.settings.walls[wall]);
-  for (int i = 0; i < s.in.grains.owned; ++i) {
-    const double gap = height.of(s.atoms.spheres[i].centre) - s.atoms.spheres[i].radius;
-    const double carried = carried_to_wall(s, i);
-    if (gap > s.search.watch + carried || s.motion.bodies[i][3] == 0) continue;
-    const Candidate found{i, -1 - wall};
-    if (gap > s.atoms.spheres[i].reach + carried) s.search.near.push_back({found, gap});
+  for_each_near(s, wall, s.search.watch, [&](int i, const Touch &touch, double extra) {
+    const Candidate found{i, wall_code(wall, touch.feature)};
+    if (touch.gap > s.atoms.spheres[i].reach + extra) s.search.near.push_back({found, touch.gap});
     else s.search.touching.push_back(found);
-  }
+  });
 }
 
 // Neighbors in the list share bodies, and a sweep in list order would wait for each store before the next load.
@@ -215,8 +225,10 @@ void measure_moves(State &s)
 NSCD_INLINE bool may_meet(const State &s, const Watched &near)
 {
   const double other = is_wall(near.pair) ? 0 : s.search.moved[s.atoms.owner[near.pair.atom_j]];
-  const double carried = is_wall(near.pair) ? carried_to_wall(s, near.pair.atom_i) : 0;
-  return near.gap <= 1.0000001 * (s.search.moved[s.atoms.owner[near.pair.atom_i]] + other + s.drift.approach + carried);
+  const double extra = is_wall(near.pair)
+      ? carried_to_wall(s, near.pair.atom_i) + s.in.dt * s.obstacles.sought(wall_of(near.pair.atom_j)).fastest()
+      : 0;
+  return near.gap <= 1.0000001 * (s.search.moved[s.atoms.owner[near.pair.atom_i]] + other + s.drift.approach + extra);
 }
 
 // Of the two that move farthest, m.
@@ -250,13 +262,9 @@ void watch_pairs_beyond(State &s, const PairList &pairs, double watched)
 
 void watch_wall_beyond(State &s, int wall, double watched)
 {
-  const Height height(s.in.settings.walls[wall]);
-  for (int i = 0; i < s.in.grains.owned; ++i) {
-    const double gap = height.of(s.atoms.spheres[i].centre) - s.atoms.spheres[i].radius;
-    const double carried = carried_to_wall(s, i);
-    const bool is_beyond = gap > watched + carried && gap <= s.search.watch + carried;
-    if (is_beyond && s.motion.bodies[i][3] > 0) s.search.near.push_back({{i, -1 - wall}, gap});
-  }
+  for_each_near(s, wall, s.search.watch, [&](int i, const Touch &touch, double extra) {
+    if (touch.gap > watched + extra) s.search.near.push_back({{i, wall_code(wall, touch.feature)}, touch.gap});
+  });
 }
 
 double smaller_radius(const State &s, const Candidate &c)
@@ -279,12 +287,15 @@ double gap_constrained(const State &s, const Watched &near)
   const auto [i, j] = near.pair;
   const Body of_i = s.motion.bodies[s.atoms.owner[i]];
   if (is_wall(near.pair)) {
-    const Vec4 normal = Height(s.in.settings.walls[wall_index(near.pair)]).normal;
-    const Vec4 way = course_start(s, s.atoms.owner[i]) + s.in.dt * (of_i + drift_of(s, near.pair, normal));
-    return near.gap + dot(normal, way);
+    const int number = wall_of(j);
+    const Obstacle &wall = s.obstacles.sought(number);
+    const Sphere &grain = s.atoms.spheres[i];
+    const Vec4 normal = touch_of(grain, near.pair, wall).normal;
+    Vec4 parting = of_i + drift_of(s, near.pair, normal);
+    if (s.obstacles.moves(number)) parting -= wall.velocity_at(grain.centre - normal * (grain.radius + near.gap));
+    return near.gap + dot(normal, course_start(s, s.atoms.owner[i]) + s.in.dt * parting);
   }
-  const Vec4 separation = s.atoms.spheres[i].centre - s.atoms.spheres[j].centre;
-  const double distance = std::sqrt(dot(separation, separation));
+  const auto [separation, distance, gap] = apart(s.atoms.spheres[i], s.atoms.spheres[j]);
   const Vec4 parting = of_i - s.motion.bodies[s.atoms.owner[j]] + drift_of(s, near.pair, separation / distance);
   const Vec4 starts = course_start(s, s.atoms.owner[i]) - course_start(s, s.atoms.owner[j]);
   return near.gap + dot(separation, starts + s.in.dt * parting) / distance;
@@ -306,7 +317,7 @@ void detect(State &state, const PairList &pairs, Sought sought)
   if (const auto narrow = sort_pairs(state, pairs)) refuse_narrow_box(state, *narrow);
   state.search.unforeseen = 0;
   if (sought == Sought::foreseen) watch_unforeseen(state);
-  for (int wall = 0; wall < int(state.in.settings.walls.size()); ++wall) sort_wall(state, wall);
+  for (int wall = 0; wall < state.obstacles.count(); ++wall) sort_wall(state, wall);
   place_contacts(state);
 }
 
@@ -318,7 +329,7 @@ void watch_farther(State &state, const PairList &pairs)
   const double watched = state.search.watch;
   state.search.watch = 1.5 * longest;
   watch_pairs_beyond(state, pairs, watched);
-  for (int wall = 0; wall < int(state.in.settings.walls.size()); ++wall) watch_wall_beyond(state, wall, watched);
+  for (int wall = 0; wall < state.obstacles.count(); ++wall) watch_wall_beyond(state, wall, watched);
 }
 
 std::size_t promote_near(State &state)

@@ -2,7 +2,7 @@
 #include "scene/left_places.hpp"
 
 #include "base/error.hpp"
-#include "scene/drifted.hpp"
+#include "scene/gap.hpp"
 
 #include <algorithm>
 #include <cmath>

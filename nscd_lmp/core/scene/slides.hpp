@@ -48,9 +48,8 @@ NSCD_INLINE typename M::Tangent slip_at_start(const State &s, std::size_t k)
   const Contact &c = s.table.contacts[k];
   alignas(vec4_alignment) Vec4 difference{}, spins{};
   for (const int b : {c.i, c.j}) {
-    if (b >= s.moving()) continue;
     difference += start_velocity(s, b) * (b == c.i ? 1.0 : -1.0);
-    spins += start_spin(s, b);
+    if (b < s.moving()) spins += start_spin(s, b);
   }
   return M::slip(c.normal, difference, dot(c.normal, difference), M::spin(spins));
 }

@@ -8,6 +8,7 @@
 #include "parallel/halo.hpp"
 #include "scene/contact_table.hpp"
 #include "scene/drift.hpp"
+#include "scene/obstacles.hpp"
 #include "scene/slabs.hpp"
 #include "scene/views.hpp"
 #include "settings/settings.hpp"
@@ -50,7 +51,7 @@ struct Courses {
   }
 };
 
-// Walls are bodies of infinite mass. Several copies, used in turn: consecutive wall contacts then do not wait
+// Walls that stand are bodies of infinite mass. Several copies, used in turn: consecutive wall contacts then do not wait
 // for each other's store to the same body.
 constexpr int obstacle_copies = 16;
 
@@ -83,7 +84,7 @@ struct Atoms {
 
 // Bodies and how they move.
 struct Motion {
-  // Velocities (moving() + obstacle_copies a slab): free ones as gathered, then with what impulses so far have given;
+  // Velocities (moving() + obstacle_copies a slab + contacts with walls that move): free ones as gathered, then with what impulses so far have given;
   // while impacts are resolved, those of the middle of the step; v_{k+1} once the rounds are over.
   AlignedVector<Body> bodies{};
   AlignedVector<Vec4> spins{};           // (bodies) the same, surface velocity r omega, m/s; walls 0. With friction
@@ -103,6 +104,8 @@ struct PairSearch {
   std::vector<Watched> near{};           // by law gap: made contacts if the solution drives them together
   std::size_t unforeseen = 0;            // of those, pairs within reach that free motion does not bring together
   double watch = 0;                      // surface distance within which pairs are watched, m
+  std::vector<double> distances{};       // (owned) of grains from a wall, m; scratch
+  std::vector<Touch> touches{};          // scratch
   std::vector<double> moved{};           // (bodies) length of their displacement, m; scratch
   Overlap watched_overlap{};             // of near, at the end of the step
 };
@@ -127,6 +130,7 @@ struct State {
   Atoms atoms{};
   Motion motion{};
   ContactTable table{};
+  Obstacles obstacles{};                 // walls
   Friction friction{};
   Courses courses{};                     // of grains with impacts
   Drift drift{};
@@ -136,13 +140,15 @@ struct State {
 
   // Bodies that are grains, of this rank or copies of others'.
   int moving() const { return in.grains.owned + motion.copies.count; }
-  // Body that stands for a wall in contact k of body i.
   // Of contact k, where the table has them.
   const Material &material(std::size_t k) const { return in.materials[table.material[k]]; }
+  // Body that stands for a wall in contact k of body i.
   int obstacle(int i, std::size_t k) const
   {
     return moving() + obstacle_copies * exec.slabs.of(i) + int(k % obstacle_copies);
   }
+  // A body of a contact with a wall that moves: of infinite mass, with the velocity of the wall's surface there.
+  int add_obstacle(const Vec4 &velocity);
 };
 
 inline Way way(const Motion &m, int body) { return m.ways.empty() ? Way::has_moved : m.ways[body]; }
@@ -167,9 +173,10 @@ NSCD_INLINE double left_by_planes(const State &s, double radius)
 // Over all ranks.
 inline double sum_everywhere(const State &s, double value) { return s.exec.halo ? s.exec.halo->sum(value) : value; }
 
-// Velocity of grain i at the start of the step, of an obstacle in the step, m/s.
+// Velocity of grain i at the start of the step, of an obstacle (a wall's body too) in the step, m/s.
 NSCD_INLINE Vec4 start_velocity(const State &s, int i)
 {
+  if (i >= s.moving()) return s.motion.bodies[i];
   if (i >= s.in.grains.owned) return s.motion.copies.start[i - s.in.grains.owned];
   if (!s.motion.paces.empty() && !s.in.grains.moves(i)) return s.motion.paces[i];
   const double *v = s.in.grains.v + 3 * std::size_t(i);

@@ -32,12 +32,23 @@ Pair pair_now(const State &s, std::size_t k)
           without_fourth(s.motion.bodies[c.i] - s.motion.bodies[c.j]) + carried_apart(s, {info.atom_i, info.atom_j})};
 }
 
-// As take_plane(), with what impacts have given along it.
+// What impacts have given along contact k turns with its plane.
+void turn_impact(State &s, std::size_t k)
+{
+  auto &tangential = s.table.impact_tangential;
+  if (tangential.is_open()) tangential[k] = turned_along(s.table.contacts[k].normal, tangential[k]);
+}
+
 void turn(State &s, std::size_t k, const Vec4 &there)
 {
   take_plane(s, k, there);
-  auto &tangential = s.table.impact_tangential;
-  if (tangential.is_open()) tangential[k] = turned_along(s.table.contacts[k].normal, tangential[k]);
+  turn_impact(s, k);
+}
+
+void turn_to_start(State &s, std::size_t k)
+{
+  take_start_plane(s, k);
+  turn_impact(s, k);
 }
 
 // Whether neither course bends.
@@ -65,7 +76,7 @@ void Bends::begin(State &s)
   s.courses.straight.resize(s.motion.bodies.size());
   for (std::size_t k = 0; k < s.table.contacts.size(); ++k)
     if (s.table.infos[k].curve < 0 && is_straight(s, s.table.contacts[k]))
-      turn(s, k, separation_at_start(s, s.table.infos[k]));
+      turn_to_start(s, k);
 }
 
 void Bends::find_starts(State &s) const
@@ -215,7 +226,7 @@ void Bends::take_back(State &s)
   for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
     const Contact &c = s.table.contacts[k];
     const ContactInfo &info = s.table.infos[k];
-    if (info.curve < 0 && is_straight(s, c)) turn(s, k, separation_at_start(s, info));
+    if (info.curve < 0 && is_straight(s, c)) turn_to_start(s, k);
   }
 }
 

@@ -3,7 +3,7 @@
 
 #include "base/hot.hpp"
 #include "scene/contact_plane.hpp"
-#include "scene/drifted.hpp"
+#include "scene/gap.hpp"
 #include "scene/slides.hpp"
 #include "solver/across_ranks.hpp"
 
@@ -146,7 +146,7 @@ static void turn_back(State &s, std::size_t k)
   const double normal = c.impulse;
   const Vec4 tangential = tangential_impulse(s, k);
   remove_impulse(s, k);
-  take_plane(s, k, separation_at_start(s, s.table.infos[k]));
+  take_start_plane(s, k);
   add_impulse(s, k, normal, turned_along(c.normal, tangential));
 }
 

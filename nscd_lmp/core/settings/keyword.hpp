@@ -6,7 +6,7 @@
 #pragma once
 
 #include "settings/settings.hpp"
-#include "settings/arguments.hpp"
+#include "base/arguments.hpp"
 
 #include <functional>
 #include <limits>

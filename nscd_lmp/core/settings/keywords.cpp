@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The table of fix nscd's keywords. In the texts *word* is a keyword or a value of one.
+#include "obstacle/kinds.hpp"
 #include "parallel/team.hpp"
 #include "settings/schemes.hpp"
 #include "settings/values.hpp"
@@ -40,15 +41,24 @@ void read_own(OwnMaterial &own, Arguments &words)
   for (std::size_t part = 0; part < material_parts.size();) part = read(part) ? 0 : part + 1;
 }
 
-Plane read_wall(Arguments &words)
+void read_wall(Settings &settings, Arguments &words)
 {
-  const std::string &kind = words.word();
-  if (kind != "plane") refuse_choice("wall", kind, {"plane"});
-  Plane plane{};
-  for (double &value : plane.point) value = words.number<double>();
-  for (double &value : plane.normal) value = words.number<double>();
-  read_own(plane.own, words);
-  return plane;
+  const ObstacleEntry &kind = find_obstacle_kind(words.word());
+  Wall wall{kind.read(words, name_of_wall(settings.walls.size()))};
+  read_own(wall.own, words);
+  settings.walls.push_back(wall);
+}
+
+// All kinds of walls with their words.
+std::string_view told_walls()
+{
+  static const std::string text = [] {
+    std::string all;
+    for (const ObstacleEntry &kind : obstacle_kinds())
+      all.append(all.empty() ? "*" : "; *").append(kind.name).append("* ").append(kind.words).append(": ").append(kind.doc);
+    return all + "; then what its contacts have of their own, as behind *material*";
+  }();
+  return text;
 }
 
 TypeRange read_types(const std::string &text)
@@ -123,12 +133,9 @@ std::vector<Keyword> table()
               "later ones hold",
        .described = true},
       {.name = "wall",
-       .value = {.kind = "plane x y z nx ny nz and its numbers",
-                 .read = [](Settings &s, Arguments &w) { s.walls.push_back(read_wall(w)); },
-                 .repeats = true},
+       .value = {.kind = "a kind of wall and its numbers", .read = read_wall, .repeats = true},
        .otherwise = "no walls",
-       .doc = "*plane* x y z nx ny nz: a point of the plane, a normal into the free side (any length but 0), then what "
-              "its contacts have of their own, as behind *material*",
+       .doc = told_walls(),
        .described = true},
       {.name = "inertia",
        .value = choice("inertia", {"sphere", "disc"}, at(&Settings::inertia)),

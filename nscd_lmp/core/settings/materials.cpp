@@ -43,7 +43,7 @@ Materials::Materials(const Settings &s, int types) : types_(types)
       pairs_.push_back(number_of(a > 0 && b > 0 ? material : s.material));
       by_type_ |= a > 0 && b > 0 && pairs_.back() != pairs_[std::size_t(types) + 2];   // pair 1 1
     }
-  for (const Plane &wall : s.walls) walls_.push_back(number_of(wall.own.over(s.material)));
+  for (const Wall &wall : s.walls) walls_.push_back(number_of(wall.own.over(s.material)));
   for (const Material &material : all_) {
     may_make_energy_ |= material.restitution != all_[0].restitution;
     may_make_energy_ |= s.frictional() && material.restitution != material.e_t;

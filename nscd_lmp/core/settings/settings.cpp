@@ -62,13 +62,15 @@ static void check_parameter(const char *keyword, std::optional<double> value, co
          solver.parameter.empty() ? "none" : solver.parameter);
 }
 
+std::string name_of_wall(std::size_t wall) { return "wall " + std::to_string(wall + 1); }
+
 // Calls f(material, whose) for what contacts have: those without their own, pairs, walls.
 template <class F>
 static void for_each_material(const Settings &s, F f)
 {
   f(s.material, std::string());
   for (const PairMaterial &pair : s.pairs) f(pair.own.over({}), "material " + pair.types + ": ");
-  for (std::size_t k = 0; k < s.walls.size(); ++k) f(s.walls[k].own.over({}), "wall " + std::to_string(k + 1) + ": ");
+  for (std::size_t k = 0; k < s.walls.size(); ++k) f(s.walls[k].own.over({}), name_of_wall(k) + ": ");
 }
 
 static bool any_has(const Settings &s, double Material::*part)
@@ -104,16 +106,9 @@ static void check_materials(const Settings &s)
     fail("inertia has no effect without friction: grains do not spin; give `friction`, or leave inertia out");
 }
 
-static void normalise(Plane &wall, std::size_t index)
+void require_walls_repeat(std::span<const Wall> walls, const BoxEdges &box)
 {
-  double *n = wall.normal;
-  const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-  for (double component : {length, wall.point[0], wall.point[1], wall.point[2]})
-    if (!std::isfinite(component))
-      fail("wall ", index + 1, ": point and normal must be finite numbers");
-  if (!(length > 0))
-    fail("wall ", index + 1, ": the normal is (0, 0, 0); give a vector that points into the free side");
-  for (int d = 0; d < 3; ++d) n[d] /= length;
+  for (std::size_t k = 0; k < walls.size(); ++k) walls[k].shape->require_repeats(name_of_wall(k), box);
 }
 
 static void check_dimension(const Settings &s, int dimension)
@@ -122,10 +117,7 @@ static void check_dimension(const Settings &s, int dimension)
     if (s.inertia == Inertia::disc) fail("inertia disc needs `dimension 2`: grains in space are spheres");
     return;
   }
-  for (std::size_t k = 0; k < s.walls.size(); ++k)
-    if (s.walls[k].normal[2] != 0)
-      fail("wall ", k + 1, ": its normal has a z component, but the scene is planar (dimension 2): make it 0, or use "
-           "dimension 3");
+  for (std::size_t k = 0; k < s.walls.size(); ++k) s.walls[k].shape->require_planar(name_of_wall(k));
 }
 
 void follow_paper(Settings &s)
@@ -193,7 +185,6 @@ Settings checked(Settings s, int dimension)
     fail("solver ", solver.name, " is for contacts without friction: choose another, or leave friction out");
   check_parameter("rho", s.rho, solver);
   check_parameter("gamma", s.gamma, solver);
-  for (std::size_t k = 0; k < s.walls.size(); ++k) normalise(s.walls[k], k);
   check_dimension(s, dimension);
   return s;
 }

@@ -3,11 +3,13 @@
 #pragma once
 
 #include "contact/material.hpp"
-#include "obstacle/plane.hpp"
+#include "obstacle/obstacle.hpp"
 #include "settings/materials.hpp"
 #include "solver/solver.hpp"
 
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,11 @@ enum class Unconverged { ignore, warn, error };
 
 // How good the answers of steps are with criterion natural, where tol, overlap and budget are not given.
 enum class Accuracy { loose, normal, tight };
+
+struct Wall {
+  std::shared_ptr<const Obstacle> shape;
+  OwnMaterial own{};   // what it has not is that of contacts without a material of their own
+};
 
 struct Settings {
   std::string solver = "auto";
@@ -41,7 +48,7 @@ struct Settings {
   double recovery = 0.2;         // law gap: share of an overlap given back per step, speed-limited
   Unconverged unconverged = Unconverged::warn;
   int threads = 1;               // of each rank
-  std::vector<Plane> walls{};
+  std::vector<Wall> walls{};
 
   // Whether any contact has friction; whether any gives back what it stops.
   bool frictional() const;
@@ -72,8 +79,14 @@ Budget budget_of(const Settings &settings);
 // The settings of Barboteu & Dumont (2017): `paper yes`.
 void follow_paper(Settings &settings);
 
-// Raises Error (value, limit, remedy) for anything out of range or that does not fit the dimension; normalises the
-// walls' normals, and fills in tol, criterion and overlap.
+// Raises Error (value, limit, remedy) for anything out of range or that does not fit the dimension; fills in tol,
+// criterion and overlap.
 Settings checked(Settings settings, int dimension = 3);
+
+// What messages call it; counted from 0.
+std::string name_of_wall(std::size_t wall);
+
+// Raises Error for a wall that is another one in the next image of the box.
+void require_walls_repeat(std::span<const Wall> walls, const BoxEdges &box);
 
 }    // namespace nscd

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "step/report.hpp"
 
-#include "scene/drifted.hpp"
+#include "scene/gap.hpp"
 #include "scene/slides.hpp"
 #include "settings/keyword.hpp"
 
@@ -46,7 +46,7 @@ void fill_contact_rows(const State &s, double *row)
     const Sphere a = in_arrays(s, info.atom_i);
     const Vec4 point = a.centre - c.normal * (a.radius + 0.5 * info.gap);
     row[0] = s.in.grains.tag[info.atom_i];
-    row[1] = info.atom_j >= 0 ? s.in.grains.tag[info.atom_j] : info.atom_j;
+    row[1] = info.atom_j >= 0 ? s.in.grains.tag[info.atom_j] : -1 - wall_of(info.atom_j);
     for (int d = 0; d < 3; ++d) {
       row[2 + d] = point[d];
       row[5 + d] = c.normal[d];

@@ -140,8 +140,9 @@ void Rounds::resolve_impacts_first(Reason reason)
 {
   if (reason != Reason::first) {
     solves_.take_back();
-    state_.motion.bodies = free_bodies_;
-    state_.motion.spins = free_spins_;
+    // Those of walls that move have come in since; nothing changes them.
+    std::copy(free_bodies_.begin(), free_bodies_.end(), state_.motion.bodies.begin());
+    std::copy(free_spins_.begin(), free_spins_.end(), state_.motion.spins.begin());
     place_materials(state_, 0);
   }
   const Settings &settings = state_.in.settings;

@@ -25,7 +25,7 @@ static double seconds(Clock::time_point from, Clock::time_point to)
 Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *ranks, int types) :
     settings_(checked(settings, dimension)), materials_(settings_, types),
     scheme_(find_scheme(settings_.law).make(settings_)),
-    state_{.in = {.settings = settings_, .materials = materials_, .dimension = dimension}},
+    state_{.in = {.settings = settings_, .materials = materials_, .dimension = dimension}, .obstacles = Obstacles(settings_)},
     halo_(ranks && ranks->count() > 1 ? std::make_unique<Halo>(*ranks) : nullptr),
     prediction_(scheme_->constants.prediction), look_ahead_(find_scheme(settings_.law).looks_ahead ? 1 : 0),
     solves_(state_, settings_, std::move(custom), looks_ahead()),
@@ -61,6 +61,7 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
   state_.in.dt = dt;
   state_.scales.lasting_moment = scheme_->constants.moment * dt;
   state_.in.grains = grains;
+  state_.obstacles.begin_step(dt, dt * prediction_);
   const Seen seen = prepare(pairs);
   together(halo_.get(), [&] { detect(state_, pairs, sought_); });
   const Rounds::Result rounds = rounds_.run(pairs);

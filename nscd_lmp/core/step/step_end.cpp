@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The end of a step: what it has done, and back into the arrays.
 #include "base/hot.hpp"
-#include "scene/drifted.hpp"
+#include "scene/drift_of.hpp"
+#include "scene/gap.hpp"
 #include "scene/slides.hpp"
 #include "scene/spins.hpp"
 #include "step/step.hpp"
@@ -55,21 +56,14 @@ NSCD_HOT Step::Tally Step::tally_contacts(double calmed)
     const Contact &c = s.table.contacts[k];
     ContactInfo &info = state_.table.infos[k];
     work += c.impulse * (info.speed_before + normal_velocity(c, s.motion.bodies.data()));
-    const Sphere &a = s.atoms.spheres[info.atom_i];
-    Vec4 separation = a.centre + s.motion.displacement[c.i];
+    info.gap = gap_at(s, {info.atom_i, info.atom_j}, in_arrays);
     if (!s.drift.of.empty()) {
-      info.gap = gap_at(s, {info.atom_i, info.atom_j}, in_arrays);
       info.radius = s.in.grains.radius[info.atom_i];
       if (info.atom_j >= 0) info.radius = std::min(info.radius, s.in.grains.radius[info.atom_j]);
       work -= c.impulse * normal_drift(s, k);   // which speed_before has
     } else if (info.atom_j >= 0) {
-      const Sphere &b = s.atoms.spheres[info.atom_j];
-      separation -= b.centre + s.motion.displacement[c.j];
-      info.gap = std::sqrt(dot(separation, separation)) - a.radius - b.radius;
       pushed += c.impulse;
       passed2 += c.impulse * speed2(s.motion.bodies[c.i] - s.motion.bodies[c.j]) / (info.radius * info.radius);
-    } else {
-      info.gap += dot(c.normal, s.motion.displacement[c.i]);
     }
     overlap = std::max(overlap, -info.gap);
     ratio = std::max(ratio, -info.gap / info.radius);
@@ -103,6 +97,7 @@ void Step::write_back()
   }
   if (state_.friction.model != Model::frictionless) write_back_spins(state_);
   drifts_.leave(state_);
+  state_.obstacles.end_step();
   belts_.see(g);
 }
 

@@ -1,14 +1,36 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Where atoms have got to, by their bodies and by their drift.
+// How far apart two spheres are, or one and a wall: the one place that says so.
 #pragma once
 
 #include "base/hot.hpp"
-#include "scene/contact_geometry.hpp"
 #include "scene/state.hpp"
 
 #include <cmath>
 
 namespace nscd {
+
+inline bool is_wall(const Candidate &candidate) { return candidate.atom_j < 0; }
+
+// From the centre of b to that of a, m.
+struct Apart {
+  alignas(vec4_alignment) Vec4 separation;
+  double distance, gap;
+};
+
+NSCD_INLINE Apart apart(const Sphere &a, const Sphere &b)
+{
+  const Vec4 separation = a.centre - b.centre;
+  const double distance = std::sqrt(dot(separation, separation));
+  return {separation, distance, distance - (a.radius + b.radius)};
+}
+
+NSCD_INLINE double gap_of(const Sphere &a, const Sphere &b) { return apart(a, b).gap; }
+
+// A grain and the feature of the wall that it is a candidate with, `wall` being where that is then.
+inline Touch touch_of(const Sphere &grain, const Candidate &c, const Obstacle &wall)
+{
+  return wall.at(grain.centre, grain.radius, feature_of(c.atom_j));
+}
 
 // An atom moved by its body and, for these times (s), by its drift.
 inline Sphere drifted(const State &s, int atom, double centre, double radius)
@@ -28,14 +50,12 @@ inline Sphere in_arrays(const State &s, int atom) { return drifted(s, atom, s.dr
 // Where a grain of this rank has got to before the box moves on.
 inline Vec4 moved_in_arrays(const State &s, int i) { return drifted(s, i, -s.drift.ahead, 0).centre; }
 
-// How far apart two spheres are, or one and a wall.
+// At the end of the step.
 inline double gap_at(const State &s, const Candidate &c, Sphere (*where)(const State &, int))
 {
   const Sphere a = where(s, c.atom_i);
-  if (is_wall(c)) return Height(s.in.settings.walls[wall_index(c)]).of(a.centre) - a.radius;
-  const Sphere b = where(s, c.atom_j);
-  const Vec4 separation = a.centre - b.centre;
-  return std::sqrt(dot(separation, separation)) - a.radius - b.radius;
+  if (is_wall(c)) return touch_of(a, c, s.obstacles.at_end(wall_of(c.atom_j))).gap;
+  return gap_of(a, where(s, c.atom_j));
 }
 
 }    // namespace nscd
