@@ -19,6 +19,7 @@ import pytest
 from pages import PAGES, README, Block, blocks, prose, title
 
 import nscd_lmp
+from nscd_lmp._choices import KEYWORDS
 
 ROOT = Path(__file__).parent.parent
 BESIDE = ("inputs", "analysis", "benchmarks")  # folders that blocks may name, linked into theirs
@@ -121,8 +122,6 @@ def test_links_lead_somewhere(page: Path) -> None:
 @pytest.mark.parametrize("page", PAGES, ids=title)
 def test_what_is_called_the_default_is_it(page: Path) -> None:
     """Of solvers and contact laws: names before "(default)" in a line."""
-    _, _, defaults = (ROOT / "docs" / "fix_nscd.md").read_text().partition("The defaults are ")
-    words = dict(re.findall(r"(\w+) = (\w+)", defaults))
     called = [
         name
         for line in prose(page).splitlines()
@@ -130,7 +129,7 @@ def test_what_is_called_the_default_is_it(page: Path) -> None:
         for name in re.findall(r"`(?:solver |law )?(\w+)`", line.partition("(default)")[0])
         if name in nscd_lmp.SOLVERS or name in nscd_lmp.LAWS
     ]
-    assert set(called) <= {words["solver"], words["law"]}
+    assert set(called) <= {KEYWORDS["solver"].value, KEYWORDS["law"].value}
 
 
 def test_compilers_that_readme_promises_are_tested() -> None:

@@ -18,8 +18,9 @@ int State::add_obstacle(const Vec4 &velocity)
 
 namespace {
 
-// A grain slides along a curved wall, whose plane a lasting contact takes where the two are half-way. Beside a wall that
-// curves towards the grain that plane is farther than the wall at the end of the way; so it is moved until it is not.
+// A grain slides along a curved wall, whose plane a lasting contact takes where the two are half-way. Beside a wall
+// that curves towards the grain that plane is farther than the wall at the end of the way; so it is moved until it is
+// not.
 void take_plane_ahead(const State &s, const Candidate &c, const Obstacle &wall, Placed &at)
 {
   Sphere grain = s.atoms.spheres[c.atom_i];

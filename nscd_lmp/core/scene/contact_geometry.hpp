@@ -52,7 +52,8 @@ NSCD_INLINE Placed placed_pair(const State &s, const Candidate &c, int i)
   const Sphere &a = s.atoms.spheres[c.atom_i], &b = s.atoms.spheres[c.atom_j];
   const auto [separation, distance, gap] = apart(a, b);
   const int j = s.atoms.owner[c.atom_j];
-  Placed at{separation / distance, start_velocity(s, i) - start_velocity(s, j), gap, std::min(a.radius, b.radius), 0, j};
+  const Vec4 before = start_velocity(s, i) - start_velocity(s, j);
+  Placed at{separation / distance, before, gap, std::min(a.radius, b.radius), 0, j};
   if (!(s.scales.lasting_moment > 0)) return at;
   const Vec4 parting = at.before + carried_apart(s, c);
   if (!passes(separation, distance, a.radius + b.radius, parting * s.in.dt)) return at;

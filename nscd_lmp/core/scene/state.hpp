@@ -51,8 +51,8 @@ struct Courses {
   }
 };
 
-// Walls that stand are bodies of infinite mass. Several copies, used in turn: consecutive wall contacts then do not wait
-// for each other's store to the same body.
+// Walls that stand are bodies of infinite mass. Several copies, used in turn: consecutive wall contacts then do not
+// wait for each other's store to the same body.
 constexpr int obstacle_copies = 16;
 
 // Grains of other ranks that have images here: bodies owned..owned + count - 1.
@@ -84,8 +84,9 @@ struct Atoms {
 
 // Bodies and how they move.
 struct Motion {
-  // Velocities (moving() + obstacle_copies a slab + contacts with walls that move): free ones as gathered, then with what impulses so far have given;
-  // while impacts are resolved, those of the middle of the step; v_{k+1} once the rounds are over.
+  // Velocities (moving() + obstacle_copies a slab + contacts with walls that move): free ones as gathered, then with
+  // what impulses so far have given; while impacts are resolved, those of the middle of the step; v_{k+1} once the
+  // rounds are over.
   AlignedVector<Body> bodies{};
   AlignedVector<Vec4> spins{};           // (bodies) the same, surface velocity r omega, m/s; walls 0. With friction
   AlignedVector<Vec4> displacement{};    // (moving()) from where contacts were sought to q_{k+1}

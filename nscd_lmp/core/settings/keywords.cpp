@@ -54,8 +54,10 @@ std::string_view told_walls()
 {
   static const std::string text = [] {
     std::string all;
-    for (const ObstacleEntry &kind : obstacle_kinds())
-      all.append(all.empty() ? "*" : "; *").append(kind.name).append("* ").append(kind.words).append(": ").append(kind.doc);
+    for (const ObstacleEntry &kind : obstacle_kinds()) {
+      all.append(all.empty() ? "*" : "; *").append(kind.name).append("* ");
+      all.append(kind.words).append(": ").append(kind.doc);
+    }
     return all + "; then what its contacts have of their own, as behind *material*";
   }();
   return text;
@@ -146,8 +148,9 @@ std::vector<Keyword> table()
        .value = choice("accuracy", {"loose", "normal", "tight"}, at(&Settings::accuracy)),
        .otherwise = "*normal*",
        .doc = "*loose*, *normal* or *tight*: how good steps are where *tol*, *overlap* and *budget* are not given, "
-              "with *criterion natural*: 1e-2, 1e-3 and 10; 1e-3, 5e-4 and 30; 1e-4, 1e-4 and 300. *loose* is for grains "
-              "that fall and flow, *tight* for beds that must stand still ([what each buys](friction_accuracy.md))"},
+              "with *criterion natural*: 1e-2, 1e-3 and 10; 1e-3, 5e-4 and 30; 1e-4, 1e-4 and 300. *loose* is for "
+              "grains that fall and flow, *tight* for beds that must stand still "
+              "([what each buys](friction_accuracy.md))"},
       {.name = "tol",
        .value = number(at(&Settings::tol)),
        .range = positive,

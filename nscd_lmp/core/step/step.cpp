@@ -25,7 +25,8 @@ static double seconds(Clock::time_point from, Clock::time_point to)
 Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *ranks, int types) :
     settings_(checked(settings, dimension)), materials_(settings_, types),
     scheme_(find_scheme(settings_.law).make(settings_)),
-    state_{.in = {.settings = settings_, .materials = materials_, .dimension = dimension}, .obstacles = Obstacles(settings_)},
+    state_{.in = {.settings = settings_, .materials = materials_, .dimension = dimension},
+           .obstacles = Obstacles(settings_)},
     halo_(ranks && ranks->count() > 1 ? std::make_unique<Halo>(*ranks) : nullptr),
     prediction_(scheme_->constants.prediction), look_ahead_(find_scheme(settings_.law).looks_ahead ? 1 : 0),
     solves_(state_, settings_, std::move(custom), looks_ahead()),
