@@ -125,6 +125,13 @@ def test_impacts_keep_angular_momentum(dt: float, e: float, mu: float) -> None:
 
 
 # A light ball between two heavy ones that close in on it meets them a thousand times in one step: more than are taken.
+def test_inelastic_impacts_with_friction_keep_angular_momentum_to_first_order() -> None:
+    """They act up to a step before the surfaces meet, and friction then acts on longer arms than it has."""
+    for dt in (1e-2, 1e-3, 1e-4):
+        assert 0 < max(oblique_impact(dt, 0.0, 0.3, seed)[0] for seed in range(5)) < 4 * dt
+    assert oblique_impact(1e-2, 0.0, 0.0, 1)[0] < 1e-12  # central impulses have no arms
+
+
 @pytest.mark.parametrize("door", scenes.DOORS)
 def test_impacts_without_end_do_not_take_the_time_of_far_ones(door: str) -> None:
     pair = oblique_pair(1)

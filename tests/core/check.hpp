@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// All of the test framework: TEST registers a function, the CHECKs count what is wrong, check.cpp has main.
+// What the tests ask with, on doctest: names without quotes, conditions of any form, errors of the core.
 #pragma once
+
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
 
 #include "base/error.hpp"
 
@@ -8,19 +11,14 @@
 
 namespace check {
 
-struct Registered {
-  Registered(const char *name, void (*run)());
-};
 void failed(const char *file, int line, const char *what);
 void near(const char *file, int line, const char *what, double value, double expected, double tolerance);
 void says(const char *file, int line, const std::string &message, const std::string &part);
 
 }    // namespace check
 
-#define TEST(name) \
-  static void name(); \
-  static const check::Registered registered_##name(#name, name); \
-  static void name()
+#define TEST(name) DOCTEST_TEST_CASE(#name)
+// Of any form; doctest's own takes no && and ||.
 #define CHECK(condition) ((condition) ? void() : check::failed(__FILE__, __LINE__, #condition))
 #define CHECK_NEAR(value, expected, tolerance) check::near(__FILE__, __LINE__, #value, value, expected, tolerance)
 // The statement must raise nscd::Error with this part in its message.
