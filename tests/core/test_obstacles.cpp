@@ -157,8 +157,6 @@ TEST(what_a_kind_of_wall_says_of_itself_holds)
     Random random(5);
     for (int k = 0; k < 200; ++k) {
       const Vec4 centre{random(-2, 2), random(-2, 2), random(-2, 2), 0};
-      double distance = 0;
-      wall->distances({&centre, sizeof centre, 1}, &distance);
       std::vector<Touch> touches;
       wall->touch(centre, 0.5, 1e9, touches);
       double nearest = 1e9;
@@ -178,7 +176,10 @@ TEST(what_a_kind_of_wall_says_of_itself_holds)
         CHECK_NEAR(gap(*later, centre) - gap(*sooner, centre), -2 * h * nscd::dot(touch.normal, velocity), 1e-6 * h);
         CHECK(nscd::dot(touch.normal, velocity) <= wall->fastest() + 1e-12);
       }
-      CHECK(!touches.empty() && distance <= nearest + 1e-12);
+      const nscd::Sphere sphere{centre, 0.5, 0};
+      std::vector<std::int32_t> near;
+      wall->find_near({&sphere, 1}, nearest - 0.5 + 1e-9, near);
+      CHECK(!touches.empty() && near == std::vector<std::int32_t>{0});
     }
   }
 }

@@ -7,11 +7,12 @@
 // each of its contacts has a body of that velocity and of infinite mass.
 #pragma once
 
-#include "contact/contact.hpp"
+#include "contact/sphere.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,22 +30,6 @@ struct Touch {
   int feature;                           // the same from step to step
 };
 
-// Where the centres of grains are in arrays of something else.
-class Centres {
- public:
-  // `first` and those that follow, `stride` bytes from one to the next.
-  Centres(const Vec4 *first, std::size_t stride, std::size_t count) : first_(first), stride_(stride), count_(count) {}
-  std::size_t count() const { return count_; }
-  const Vec4 &operator[](std::size_t k) const
-  {
-    return *reinterpret_cast<const Vec4 *>(reinterpret_cast<const char *>(first_) + k * stride_);
-  }
-
- private:
-  const Vec4 *first_;
-  std::size_t stride_, count_;
-};
-
 class Obstacle {
  public:
   Obstacle() = default;
@@ -52,8 +37,9 @@ class Obstacle {
   Obstacle(const Obstacle &) = default;
   Obstacle &operator=(const Obstacle &) = default;
 
-  // To the nearest of its features, m, or less: what tells the many grains that are far away.
-  virtual void distances(const Centres &centres, double *to) const = 0;
+  // Adds the numbers of the spheres that are no farther from the nearest of its features than `within` (m); it may add
+  // others. This is asked of all grains, and what follows of few.
+  virtual void find_near(std::span<const Sphere> spheres, double within, std::vector<std::int32_t> &found) const = 0;
   // A feature and a sphere, however far apart.
   virtual Touch at(const Vec4 &centre, double radius, int feature) const = 0;
   // Adds the features whose gap to the sphere is at most `within` (m).
@@ -77,14 +63,15 @@ class Obstacle {
   virtual void require_repeats(const std::string &name, const BoxEdges &box) const = 0;  // in periodic boxes
 };
 
-// What a kind of wall gives as `double distance(const Vec4 &centre) const`, for many grains at a time.
+// What a kind of wall gives as `double distance(const Vec4 &centre) const`, m, for all grains at a time.
 template <class Shape>
 class ObstacleOf : public Obstacle {
  public:
-  void distances(const Centres &centres, double *to) const final
+  void find_near(std::span<const Sphere> spheres, double within, std::vector<std::int32_t> &found) const final
   {
     const Shape &shape = static_cast<const Shape &>(*this);
-    for (std::size_t k = 0; k < centres.count(); ++k) to[k] = shape.distance(centres[k]);
+    for (std::size_t k = 0; k < spheres.size(); ++k)
+      if (!(shape.distance(spheres[k].centre) - spheres[k].radius > within)) found.push_back(std::int32_t(k));
   }
 };
 

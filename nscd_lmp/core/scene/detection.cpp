@@ -146,24 +146,30 @@ double carried_to_wall(const State &s, int i)
   return s.drift.of.empty() ? 0 : s.in.dt * length(without_fourth(s.drift.of[i]));
 }
 
+double most_carried(const State &s)
+{
+  double most = 0;
+  for (int i = 0; !s.drift.of.empty() && i < s.in.grains.owned; ++i) most = std::max(most, carried_to_wall(s, i));
+  return most;
+}
+
 // Calls f(i, touch, extra) for what a wall's features and grains are apart by no more than `watch`; both that and reach
 // grow by `extra`, what the box carries the grain and the wall moves, m.
 template <class F>
 void for_each_near(State &s, int number, double watch, F f)
 {
   const Obstacle &wall = s.obstacles.sought(number);
-  const std::size_t count = std::size_t(s.in.grains.owned);
-  if (count == 0) return;
-  s.search.distances.resize(count);
-  wall.distances({&s.atoms.spheres[0].centre, sizeof(Sphere), count}, s.search.distances.data());
   const double comes_near = s.in.dt * wall.fastest();
-  for (std::size_t i = 0; i < count; ++i) {
+  const std::span owned(s.atoms.spheres.data(), std::size_t(s.in.grains.owned));
+  s.search.beside.clear();
+  wall.find_near(owned, watch + comes_near + most_carried(s), s.search.beside);
+  for (const std::int32_t i : s.search.beside) {
+    if (s.motion.bodies[i][3] == 0) continue;
     const Sphere &grain = s.atoms.spheres[i];
-    const double extra = carried_to_wall(s, int(i)) + comes_near;
-    if (s.search.distances[i] - grain.radius > watch + extra || s.motion.bodies[i][3] == 0) continue;
+    const double extra = carried_to_wall(s, i) + comes_near;
     s.search.touches.clear();
     wall.touch(grain.centre, grain.radius, watch + extra, s.search.touches);
-    for (const Touch &touch : s.search.touches) f(int(i), touch, extra);
+    for (const Touch &touch : s.search.touches) f(i, touch, extra);
   }
 }
 

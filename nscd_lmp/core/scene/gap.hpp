@@ -33,7 +33,7 @@ inline Touch touch_of(const Sphere &grain, const Candidate &c, const Obstacle &w
 }
 
 // An atom moved by its body and, for these times (s), by its drift.
-inline Sphere drifted(const State &s, int atom, double centre, double radius)
+NSCD_INLINE Sphere drifted(const State &s, int atom, double centre, double radius)
 {
   Sphere sphere = s.atoms.spheres[atom];
   sphere.centre += s.motion.displacement[s.atoms.owner[atom]];
@@ -44,14 +44,15 @@ inline Sphere drifted(const State &s, int atom, double centre, double radius)
 }
 
 // Where it is at the end of the step, as the contact laws see it; and as the arrays have it then.
-inline Sphere at_end(const State &s, int atom) { return drifted(s, atom, s.drift.to_end, s.drift.to_end); }
-inline Sphere in_arrays(const State &s, int atom) { return drifted(s, atom, s.drift.centres, s.drift.radii); }
+NSCD_INLINE Sphere at_end(const State &s, int atom) { return drifted(s, atom, s.drift.to_end, s.drift.to_end); }
+NSCD_INLINE Sphere in_arrays(const State &s, int atom) { return drifted(s, atom, s.drift.centres, s.drift.radii); }
 
 // Where a grain of this rank has got to before the box moves on.
-inline Vec4 moved_in_arrays(const State &s, int i) { return drifted(s, i, -s.drift.ahead, 0).centre; }
+NSCD_INLINE Vec4 moved_in_arrays(const State &s, int i) { return drifted(s, i, -s.drift.ahead, 0).centre; }
 
 // At the end of the step.
-inline double gap_at(const State &s, const Candidate &c, Sphere (*where)(const State &, int))
+template <class Where>
+NSCD_INLINE double gap_at(const State &s, const Candidate &c, Where where)
 {
   const Sphere a = where(s, c.atom_i);
   if (is_wall(c)) return touch_of(a, c, s.obstacles.at_end(wall_of(c.atom_j))).gap;

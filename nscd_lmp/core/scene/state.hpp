@@ -5,6 +5,7 @@
 #include "base/hot.hpp"
 #include "base/storage.hpp"
 #include "contact/contact.hpp"
+#include "contact/sphere.hpp"
 #include "parallel/halo.hpp"
 #include "scene/contact_table.hpp"
 #include "scene/drift.hpp"
@@ -17,13 +18,6 @@
 #include <vector>
 
 namespace nscd {
-
-// Centre and radius of an atom where contacts are sought; `reach` widens the search, 0 for law moreau.
-struct Sphere {
-  alignas(vec4_alignment) Vec4 centre;  // fourth component 0
-  double radius;
-  double reach;
-};
 
 // The largest of pairs: m, and over the smaller radius.
 struct Overlap {
@@ -105,7 +99,7 @@ struct PairSearch {
   std::vector<Watched> near{};           // by law gap: made contacts if the solution drives them together
   std::size_t unforeseen = 0;            // of those, pairs within reach that free motion does not bring together
   double watch = 0;                      // surface distance within which pairs are watched, m
-  std::vector<double> distances{};       // (owned) of grains from a wall, m; scratch
+  std::vector<std::int32_t> beside{};    // atoms that are near a wall; scratch
   std::vector<Touch> touches{};          // scratch
   std::vector<double> moved{};           // (bodies) length of their displacement, m; scratch
   Overlap watched_overlap{};             // of near, at the end of the step
