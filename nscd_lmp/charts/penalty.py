@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, Literal
 
@@ -161,13 +161,15 @@ class Spring:
     def walls(self, walls: Sequence[Plane], friction: Friction) -> list[str]:
         """Return the commands of the walls, as few fixes as LAMMPS can do them with."""
         commands: list[str] = []
-        by_friction: dict[Friction, list[Plane]] = {}
+        by_material: dict[tuple[Friction, Spring], list[Plane]] = {}
         for wall in walls:
-            by_friction.setdefault(friction if wall.friction is None else wall.friction, []).append(wall)
-        for number, (own, planes) in enumerate(by_friction.items()):
+            own = {name: getattr(wall, name) for name in ("restitution", "e_t") if getattr(wall, name) is not None}
+            mu = friction if wall.friction is None else wall.friction
+            by_material.setdefault((mu, replace(self, **own)), []).append(wall)
+        for number, ((mu, spring), planes) in enumerate(by_material.items()):
             # also for gran/hooke/history: the friction of fix wall/gran hooke/history is wrong in LAMMPS of July 2025,
             # with little damping there is next to none (corrected by its pull request 5007)
-            words = f"granular {self._granular(own)}"
+            words = f"granular {spring._granular(mu)}"
             commands += _wall_fixes(f"wall{number}", words, planes)
         return commands
 

@@ -35,8 +35,8 @@ inline Touch touch_of(const Sphere &grain, const Candidate &c, const Obstacle &w
 // An atom moved by its body and, for these times (s), by its drift.
 NSCD_INLINE Sphere drifted(const State &s, int atom, double centre, double radius)
 {
-  Sphere sphere = s.atoms.spheres[atom];
-  sphere.centre += s.motion.displacement[s.atoms.owner[atom]];
+  const Sphere &sought = s.atoms.spheres[atom];
+  Sphere sphere{sought.centre + s.motion.displacement[s.atoms.owner[atom]], sought.radius, 0};
   if (s.drift.of.empty()) return sphere;
   sphere.centre += without_fourth(s.drift.of[atom]) * centre;
   sphere.radius += s.drift.of[atom][3] * radius;
