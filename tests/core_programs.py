@@ -60,15 +60,10 @@ class Program:
             cases = list(ElementTree.parse(report).iter("testcase"))
         except (OSError, ElementTree.ParseError):  # a sanitizer, or a crash, has ended it
             return {name: self.alone(name) for name in names}
-        return {
-            case.attrib["name"]: "\n".join(f.attrib["message"] + (f.text or "") for f in case) or self.ended(done)
-            for case in cases
-        }
-
-    @staticmethod
-    def ended(done: subprocess.CompletedProcess[str]) -> str:
-        """Return nothing, or what a program said that failed without a failed test."""
-        return "" if done.returncode in (0, 1) else done.stdout
+        found = {case.attrib["name"]: "\n".join(f.attrib["message"] + (f.text or "") for f in case) for case in cases}
+        if done.returncode != 0 and not any(found.values()):  # a report may not know all that fails
+            return {name: done.stdout for name in names}
+        return found
 
     def alone(self, name: str) -> str:
         """Run one test; return what it failed by."""

@@ -105,5 +105,5 @@ TEST(what_fails_on_one_rank_fails_on_all)
     }
   });
   CHECK(told[0] == told[2] && told[1] == told[2]);
-  check::says(__FILE__, __LINE__, told[0], "not a finite number");
+  CHECK_SAYS(told[0], "not a finite number");
 }

@@ -83,5 +83,5 @@ TEST(the_description_names_the_materials)
   const std::string words = "friction 0.3 restitution 0.5 material 1 2* stick wall plane 0 0 0 0 0 1 restitution 0.1";
   const std::string text = nscd::describe(nscd::Step(settings(words), {}, 3, nullptr, 2));
   for (const char *part : {"friction 0.3, stick of types 1 2*", "restitution 0.5, 0.1 on wall 1", "tangential 0"})
-    check::says(__FILE__, __LINE__, text, part);
+    CHECK_SAYS(text, part);
 }

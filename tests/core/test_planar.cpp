@@ -76,14 +76,12 @@ TEST(the_description_names_the_model)
   const auto text = [](const char *words, int dimension) {
     return nscd::describe(Step(settings(words), {}, dimension));
   };
-  using check::says;
-  says(__FILE__, __LINE__, text("", 2), "frictionless: 1 unknown per contact, no spins");
-  says(__FILE__, __LINE__, text("friction 0.5", 2),
-       "friction 0.5; planar: 2 unknowns per contact, spins about z of discs");
-  says(__FILE__, __LINE__, text("stick", 3), "friction stick; spatial: 3 unknowns per contact, spins of spheres");
-  says(__FILE__, __LINE__, text("friction 0.5 inertia sphere wall plane 0 0 0 0 1 0 stick", 2),
-       "friction 0.5, stick on wall 1; planar: 2 unknowns per contact, spins about z of spheres");
-  says(__FILE__, __LINE__, text("friction 0.5 restitution 0.5 e_t 0.25", 3), "restitution 0.5, tangential 0.25");
+  CHECK_SAYS(text("", 2), "frictionless: 1 unknown per contact, no spins");
+  CHECK_SAYS(text("friction 0.5", 2), "friction 0.5; planar: 2 unknowns per contact, spins about z of discs");
+  CHECK_SAYS(text("stick", 3), "friction stick; spatial: 3 unknowns per contact, spins of spheres");
+  CHECK_SAYS(text("friction 0.5 inertia sphere wall plane 0 0 0 0 1 0 stick", 2),
+             "friction 0.5, stick on wall 1; planar: 2 unknowns per contact, spins about z of spheres");
+  CHECK_SAYS(text("friction 0.5 restitution 0.5 e_t 0.25", 3), "restitution 0.5, tangential 0.25");
 }
 
 // A disc set down sliding rolls at 2/3 v0 in the end (a sphere at 5/7): v = v0 / (1 + 1/k).

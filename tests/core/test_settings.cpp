@@ -252,7 +252,7 @@ TEST(the_description_names_what_was_chosen)
   const std::string words = "solver sal law moreau restitution 0.5 rho 0.3 wall plane 0 0 0 0 0 1";
   const std::string text = nscd::describe(nscd::Step(checked(words)));
   for (const char *part : {"moreau", "SAL", "rho = 0.3/W_nn", "1 wall", "restitution 0.5", "tol 1e-06 (natural map)"})
-    check::says(__FILE__, __LINE__, text, part);
+    CHECK_SAYS(text, part);
 }
 
 // What has no words of its own there is told as a script gives it, where it is not the default.
@@ -260,7 +260,7 @@ TEST(the_description_names_all_that_is_not_the_default)
 {
   const std::string text = nscd::describe(nscd::Step(checked("maxiter 7 recovery 0.1 warmstart no accuracy tight")));
   for (const char *part : {"; maxiter 7", "; recovery 0.1", "; warmstart no", "; accuracy tight"})
-    check::says(__FILE__, __LINE__, text, part);
+    CHECK_SAYS(text, part);
   const std::string plain = nscd::describe(nscd::Step(checked("")));
   for (const nscd::Keyword &keyword : nscd::keywords())
     if (!keyword.described) CHECK(plain.find("; " + std::string(keyword.name)) == plain.npos);
