@@ -105,6 +105,21 @@ def test_walls_are_those_of_the_scene_unless_others_are_given(scene: Make) -> No
     assert ends[2][0, 2] == pytest.approx(RADIUS - 0.5 * GRAVITY * 0.3**2)
 
 
+def test_fix_nscd_takes_the_walls_of_the_scene_and_says_where_it_has_none(scene: Make, tmp_path: Path) -> None:
+    ends = []
+    for words, warns in (("${nscd_walls}", False), ("", True)):
+        lmp = scene(gravity=GRAVITY, walls=[FLOOR], dt=1e-3, speed=5.0)
+        lmp.commands_list([f"log {tmp_path / 'log'}", f"fix hard all nscd {words}", "run 300"])
+        lmp.command("log none")
+        ends.append(state(lmp)[0][0, 2])
+        assert ("has no walls, and the scene was made with some" in (tmp_path / "log").read_text()) == warns
+    assert ends[0] == pytest.approx(RADIUS)
+    assert ends[1] < 0
+    lmp = scene(walls=())
+    lmp.commands_list([f"log {tmp_path / 'log'}", "fix hard all nscd", "run 0", "log none"])
+    assert "has no walls" not in (tmp_path / "log").read_text()
+
+
 def test_walls_end_with_their_scene(scene: Make) -> None:
     lmp = scene(walls=[FLOOR])
     assert walls_of(lmp) == (FLOOR,)

@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 SILENT = ("-screen", "none", "-log", "none", "-nocite")
 AXES = "xyz"
 REGION = "nscd_scene"  # of the box
+WALLS_IN_WORDS = "nscd_walls"  # LAMMPS' variable
 WALLS = "_nscd_walls"  # the attribute of a LAMMPS object that keeps the walls of its scene
 FEW = 300  # grains; up to there all pairs are looked at faster than bins are kept
 
@@ -70,7 +71,7 @@ def scene(
         Axes along which the box repeats, such as ``"xy"``; they need `box`. In dimension 2 z always does.
     walls : sequence of Plane
         :func:`nscd_lmp.attach` takes them for this instance, unless it is given others. LAMMPS itself has no walls:
-        with ``fix nscd`` give it theirs, :meth:`nscd_lmp.Plane.keywords`.
+        with ``fix nscd`` append ``${nscd_walls}``, a variable that has them in words. Without, it warns.
     gravity : float or three numbers, m/s^2
         A number points along -z, in dimension 2 along -y.
     dimension : int
@@ -132,6 +133,9 @@ def scene(
         )
         if pull.any():
             lmp.command(gravity_fix(gravity, planar))
+        if walls:  # for `fix nscd`, which warns where it has none
+            words = " ".join(word for wall in walls for word in wall.keywords())
+            lmp.command(f'variable {WALLS_IN_WORDS} string "{words}"')
     except BaseException:
         lmp.close()
         raise

@@ -107,6 +107,7 @@ void FixNscd::init()
     checks_.require_sole_integrator();
   });
   checks_.tell_of_other_fixes_nscd();
+  checks_.tell_of_forgotten_walls(step_->settings());
 }
 
 void FixNscd::check_run()

@@ -15,6 +15,7 @@
 #include <modify.h>
 #include <neighbor.h>
 #include <update.h>
+#include <variable.h>
 
 #include <algorithm>
 #include <cstring>
@@ -82,6 +83,16 @@ void SceneChecks::tell_of_other_fixes_nscd() const
                      "Fix nscd {}: fix {} is a second fix nscd, and the grains of one are infinitely heavy to the "
                      "other: where they can meet, use one fix for the union of their groups",
                      fix_->id, other->id);
+}
+
+void SceneChecks::tell_of_forgotten_walls(const nscd::Settings &settings) const
+{
+  const bool of_scene = domain->get_region_by_id("nscd_scene") && input->variable->find("nscd_walls") >= 0;
+  if (of_scene && settings.walls.empty() && comm->me == 0)
+    error->warning(FLERR,
+                   "Fix nscd {} has no walls, and the scene was made with some: append ${{nscd_walls}} to its line, "
+                   "if they are to hold grains",
+                   fix_->id);
 }
 
 // Whether an atom that this fix moves is in the other's group.

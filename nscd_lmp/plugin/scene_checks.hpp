@@ -29,6 +29,8 @@ class SceneChecks : protected Pointers {
   void require_future_bonds_listed() const;
 
   void tell_of_other_fixes_nscd() const;
+  // nscd_lmp.scene() leaves its walls in a variable; a fix that has none has forgotten them, or so it seems.
+  void tell_of_forgotten_walls(const nscd::Settings &settings) const;
   // Again when atoms have come in; each fix once.
   void tell_of_force_holders();
   // What neigh_modify exclude leaves out of what could be contacts; empty if nothing.
