@@ -111,6 +111,18 @@ const nscd::StepReport &Scene::advance(nscd::Step &step, double dt)
   return step.advance(grains(), pairs(), dt);
 }
 
+Scene part_of_rank(const Scene &all, int rank, const std::function<int(int grain)> &owner)
+{
+  Scene part;
+  part.newton = false;
+  const auto at = [](const std::vector<double> &of, int i) { return Point{of[3 * i], of[3 * i + 1], of[3 * i + 2]}; };
+  for (int i = 0; i < all.owned; ++i)
+    if (owner(i) == rank) part.tag[part.add(at(all.x, i), all.radius[i], all.mass[i], at(all.v, i))] = all.tag[i];
+  for (int i = 0; i < all.owned; ++i)
+    if (owner(i) != rank) part.add_foreign_image(at(all.x, i), all.radius[i], all.tag[i], owner(i));
+  return part;
+}
+
 nscd::Settings settings(const std::string &keywords)
 {
   std::istringstream stream(keywords);

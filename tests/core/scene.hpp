@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
@@ -59,6 +60,9 @@ std::string box_walls(double l, double height);
 
 // The contact of these two atoms or of atom i and wall -1 - j, in any order; null if there is none.
 const nscd::Contact *find_contact(const nscd::State &state, int i, int j);
+
+// What one rank has of a scene: its own grains, and images of all others. `owner` is the rank of a grain.
+Scene part_of_rank(const Scene &all, int rank, const std::function<int(int grain)> &owner);
 
 // Numbers in [lo, hi) that are the same on every machine, which the standard's distributions are not.
 class Random {

@@ -14,24 +14,13 @@ static Scene part_of_heap(int rank, int count)
 {
   const int side = 6;
   Random random(11);
-  Scene scene;
-  scene.newton = false;
-  struct Foreign {
-    Point centre;
-    std::int32_t tag;
-    int rank;
-  };
-  std::vector<Foreign> others;
+  Scene all;
   for (int i = 0; i < side * side * side; ++i) {
     const Point centre{1 + 1.999 * (i % side), 1 + 1.999 * (i / side % side), 0.999 + 1.999 * (i / (side * side))};
     const Point velocity{random(-1, 1), random(-1, 1), random(-1, 1)};
-    const double mass = random(0.5, 1.5);
-    const int owner = std::min(count - 1, int(centre[0] / (2.0 * side) * count));
-    if (owner == rank) scene.tag[scene.add(centre, 1, mass, velocity)] = i + 1;
-    else others.push_back({centre, i + 1, owner});
+    all.add(centre, 1, random(0.5, 1.5), velocity);
   }
-  for (const Foreign &other : others) scene.add_foreign_image(other.centre, 1, other.tag, other.rank);
-  return scene;
+  return part_of_rank(all, rank, [&](int i) { return std::min(count - 1, int(all.x[3 * i] / (2.0 * side) * count)); });
 }
 
 // Velocities and spins by tag after a step, and behind them the largest overlap.

@@ -329,29 +329,18 @@ TEST(a_wall_that_moves_along_itself_drags)
   CHECK_NEAR(scene.v[0], 5 * 2.0 / 7, 1e-9);
 }
 
-// Grains in a spinning shell above a groove that a piston closes: any number of ranks, and threads, give one answer.
+// Grains for a spinning shell, above a groove, beside a piston.
 static Scene cloud(int rank, int count)
 {
   Random random(12);
-  Scene scene;
-  scene.newton = false;
-  struct Other {
-    Point centre;
-    std::int32_t tag;
-    int rank;
-  };
-  std::vector<Other> others;
+  Scene all;
   for (int i = 0; i < 64; ++i) {
     Point centre{2.001 * (i % 4) - 3, 2.001 * (i / 4 % 4) - 3, 2.001 * (i / 16) - 3};
     for (double &c : centre) c += random(-1, 1) * 1e-3;
     const Point velocity{random(-1, 1), random(-1, 1), random(-1, 1)};
-    const double mass = random(0.5, 1.5);
-    const int owner = std::min(count - 1, int((centre[0] + 4) / 8 * count));
-    if (owner == rank) scene.tag[scene.add(centre, 1, mass, velocity)] = i + 1;
-    else others.push_back({centre, i + 1, owner});
+    all.add(centre, 1, random(0.5, 1.5), velocity);
   }
-  for (const Other &other : others) scene.add_foreign_image(other.centre, 1, other.tag, other.rank);
-  return scene;
+  return part_of_rank(all, rank, [&](int i) { return std::min(count - 1, int((all.x[3 * i] + 4) / 8 * count)); });
 }
 
 static std::vector<double> after_a_step(const std::string &words, int count)

@@ -96,19 +96,10 @@ static void run_on_two_ranks(const char *name, const std::string &words)
   on_ranks(2, [&](ThreadRanks &ranks) {
     const int rank = ranks.rank();
     const auto owner = [&](int i) { return all.x[3 * i] < 5 ? 0 : 1; };
-    Scene scene;
-    scene.newton = false;
+    Scene scene = part_of_rank(all, rank, owner);
     std::vector<int> image_of;
     for (int i = 0; i < all.owned; ++i)
-      if (owner(i) == rank) {
-        const double *x = &all.x[3 * i], *v = &all.v[3 * i];
-        scene.tag[scene.add({x[0], x[1], x[2]}, all.radius[i], all.mass[i], {v[0], v[1], v[2]})] = i + 1;
-      }
-    for (int i = 0; i < all.owned; ++i)
-      if (owner(i) != rank) {
-        scene.add_foreign_image({all.x[3 * i], all.x[3 * i + 1], all.x[3 * i + 2]}, all.radius[i], i + 1, owner(i));
-        image_of.push_back(i);
-      }
+      if (owner(i) != rank) image_of.push_back(i);
     Step step(settings(words + " unconverged ignore" + box_walls(10, 14)), {}, 3, &ranks);
     double wait[1] = {};
     for (int k = 0; k < 40; ++k) {
