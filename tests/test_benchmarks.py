@@ -125,6 +125,20 @@ FILES = {
             "given_up",
         }
     },
+    "repelling_contacts": {
+        "repelling_contacts.csv": {
+            "friction",
+            "step",
+            "contacts",
+            "sweeps",
+            "residual",
+            "repelled",
+            "growth",
+            "negative",
+            "grown",
+            "changed",
+        }
+    },
     "friction_accuracy": {
         "friction_accuracy.csv": {
             "part",
