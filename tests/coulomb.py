@@ -38,11 +38,16 @@ ACCURACY = 1e-11  # of the accepted answer, as a share of the largest velocity (
 
 @dataclass
 class Problem:
-    """The contact problem: w (n d, n d) in 1/kg, q (n, d) in m/s and mu (n,), which may be 0 or infinite."""
+    """The contact problem: w (n d, n d) in 1/kg, q (n, d) in m/s and mu (n,), which may be 0 or infinite.
+
+    Contacts may have more parts whose impulses are bounded by p_n: `more` has the columns of each, and its coefficients
+    (n,). Only `residual` and `error` know of these.
+    """
 
     w: Array
     q: Array
     mu: Array
+    more: tuple[tuple[slice, Array], ...] = ()
 
     def velocity(self, p: Array) -> Array:
         """Return W p + q, (n, d)."""
@@ -83,8 +88,11 @@ def residual(given: Problem, p: Array, u: Array | None = None) -> Array:
     diagonal = given.diagonal()
     out = np.empty_like(u)
     out[:, 0] = np.minimum(u[:, 0], diagonal[:, 0] * p[:, 0])
-    goal = onto_disc(p[:, 1:] - u[:, 1:] / diagonal[:, 1:], radii(given.mu, p[:, 0]))
-    out[:, 1:] = diagonal[:, 1:] * (p[:, 1:] - goal)
+    first = given.more[0][0].start if given.more else None
+    for columns, mu in ((slice(1, first), given.mu), *given.more):
+        scale = diagonal[:, columns].max(axis=1, keepdims=True)
+        goal = onto_disc(p[:, columns] - u[:, columns] / scale, radii(mu, p[:, 0]))
+        out[:, columns] = scale * (p[:, columns] - goal)
     return out
 
 

@@ -61,7 +61,7 @@ GrainProblem::GrainProblem(const GrainArrays &a) :
       slide.mu = a.mu[k];
       slide.impulse = M::from_space(c.normal, tangential(k, a.start + k * a.dim));
       set_bias(slide, M::from_space(c.normal, tangential(k, a.q + k * a.dim)));
-      apply_tangential<M>(c, slide.impulse, a.spin_response, bodies_.data(), spins_.data());
+      problem_.sliding.mechanics<M>(bodies_.data()).template push_part<0>(c, k, slide.impulse);
     });
   }
 }
@@ -74,8 +74,8 @@ void GrainProblem::rebuild_bodies()
     const Contact &c = contacts_[k];
     apply_impulse(c, c.impulse, bodies_.data());
     with_friction(problem_.sliding.model, [&]<class M>(M) {
-      apply_tangential<M>(c, problem_.sliding.slides<M>()[k].impulse, arrays_.spin_response, bodies_.data(),
-                          spins_.data());
+      const auto impulse = problem_.sliding.slides<M>()[k].impulse;
+      problem_.sliding.mechanics<M>(bodies_.data()).template push_part<0>(c, k, impulse);
     });
   }
 }

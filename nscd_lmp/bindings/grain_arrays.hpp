@@ -41,8 +41,8 @@ class GrainProblem {
   AlignedVector<Body> bodies_;
   AlignedVector<Vec4> spins_;
   std::vector<Contact> contacts_;
-  AlignedVector<Planar::Slide> planar_;
-  AlignedVector<Spatial::Slide> spatial_;
+  AlignedVector<Slide<Planar>> planar_;
+  AlignedVector<Slide<Spatial>> spatial_;
   Workspace workspace_;
   Problem problem_;
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What solver auto hands to whom: grains and matrices alike, the same bits every time.
+#include "as_matrix.hpp"
 #include "check.hpp"
 #include "scene.hpp"
-#include "solver/global/on_grains.hpp"
 
 #include <cmath>
 
@@ -40,7 +40,7 @@ struct Tower {
     if (model != nscd::Model::frictionless)
       problem.sliding = {model, response, spins.data(), planar.data(), spatial.data()};
     const nscd::SolverEntry &entry = nscd::find_solver(solver);
-    return as_matrix ? nscd::solve_assembled(problem, options, entry.solve_global) : entry.solve(problem, options);
+    return as_matrix ? solve_as_matrix(problem, options, entry) : entry.solve(problem, options);
   }
 
   double fastest() const

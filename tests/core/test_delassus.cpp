@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Delassus matrices of grains, and solvers on them against the same solvers on the bodies.
+#include "as_matrix.hpp"
 #include "check.hpp"
 #include "contact/tangents.hpp"
 #include "problem/delassus.hpp"
 #include "scene.hpp"
-#include "solver/global/on_grains.hpp"
+#include "push_by_hand.hpp"
 
 #include <cmath>
+#include <memory>
 
 using nscd::Model;
 using nscd::Vec4;
@@ -53,7 +55,7 @@ struct Heap {
     const nscd::Tangents t = nscd::tangents(c.normal, model);
     nscd::with_friction(model, [&]<class M>(M) {
       const auto p = M::from_space(c.normal, (along == 1 ? t.first : t.second) * impulse);
-      nscd::apply_tangential<M>(c, p, response(), bodies.data(), spins.data());
+      push_by_hand<M>(c, p, response(), bodies, spins);
     });
   }
 
@@ -133,8 +135,10 @@ TEST(an_assembled_problem_starts_at_the_bodies_velocities)
   Random random(3);
   for (const Model model : models) {
     Heap heap(random, model, 8, 14);
-    nscd::AssembledProblem assembled(heap.problem());
-    nscd::GlobalProblem &p = assembled.problem();
+    const nscd::Problem grains = heap.problem();
+    const auto assembled = nscd::with_mechanics(
+        grains, [&](const auto &mechanics) { return std::make_unique<nscd::AssembledProblem>(grains, mechanics); });
+    nscd::GlobalProblem &p = assembled->problem();
     std::vector<double> u(p.p.size());
     p.w.multiply(p.p.data(), u.data());
     const std::vector<double> expected = heap.velocities();
@@ -155,7 +159,7 @@ TEST(sweeps_over_rows_are_sweeps_over_grains)
       nscd::Problem grains = heap.problem(), matrix = rows.problem();
       const nscd::SolverOptions options{1e-30, 7, solver.default_parameter};
       const auto a = solver.solve(grains, options);
-      const auto b = nscd::solve_assembled(matrix, options, solver.solve_global);
+      const auto b = solve_as_matrix(matrix, options, solver);
       CHECK(a.iterations == 7 && b.iterations == 7 && !a.converged && !b.converged);
       for (std::size_t k = 0; k < 14; ++k) CHECK_NEAR(heap.contacts[k].impulse, rows.contacts[k].impulse, 1e-13);
       for (std::size_t i = 0; i < heap.bodies.size(); ++i) {
@@ -176,7 +180,7 @@ TEST(every_solver_finds_the_velocities_of_a_frictionless_heap)
       CHECK(nscd::find_solver("pdas").solve(exact, {1e-14, 1000000, 1}).converged);
       const nscd::SolverOptions options{1e-12, 1000000, solver.default_parameter};
       CHECK(solver.solve(grains, options).converged);
-      CHECK(nscd::solve_assembled(matrix, options, solver.solve_global).converged);
+      CHECK(solve_as_matrix(matrix, options, solver).converged);
       for (std::size_t i = 0; i < heap.bodies.size(); ++i) {
         CHECK(nscd::length(heap.bodies[i] - reference.bodies[i]) < 1e-7);
         CHECK(nscd::length(rows.bodies[i] - reference.bodies[i]) < 1e-7);
@@ -202,7 +206,7 @@ TEST(bodies_carry_the_impulses_of_their_contacts)
           nscd::apply_impulse(c, heap.contacts[k].impulse - c.impulse, free.bodies.data());
           nscd::with_friction(model, [&]<class M>(M) {
             const auto p = heap.problem().sliding.slides<M>()[k].impulse;
-            nscd::apply_tangential<M>(c, p, heap.response(), free.bodies.data(), free.spins.data());
+            push_by_hand<M>(c, p, heap.response(), free.bodies, free.spins);
           });
         }
         for (std::size_t i = 0; i < heap.bodies.size(); ++i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Operations on contacts with friction, against formulas with radii and angular velocities, and the conservation laws.
 #include "check.hpp"
+#include "push_by_hand.hpp"
 #include "scene.hpp"
 #include "scene/slides.hpp"
 #include "solver/solver.hpp"
@@ -77,7 +78,7 @@ struct TouchingPair {
   void push(double normal, const typename M::Tangent &tangential)
   {
     nscd::apply_impulse(contact, normal, bodies.data());
-    nscd::apply_tangential<M>(contact, tangential, response, bodies.data(), spins.data());
+    push_by_hand<M>(contact, tangential, response, bodies, spins);
   }
 };
 

@@ -14,17 +14,17 @@ struct Remembered {
   }
 };
 
-struct Memory : nscd::ImpulseMemory<nscd::NormalImpulse> {
+struct Memory : nscd::ImpulseMemory<nscd::Remembered<1>> {
   void remember(const Remembered &r)
   {
     ImpulseMemory::remember(r.infos, [&](std::size_t k) {
-      return nscd::NormalImpulse{r.infos[k].key, r.impulses[k]};
+      return nscd::Remembered<1>{r.infos[k].key, {r.impulses[k]}};
     });
   }
   double recall(std::uint64_t key) const
   {
     const auto *known = ImpulseMemory::recall(key);
-    return known ? known->normal : 0;
+    return known ? known->numbers[0] : 0;
   }
 };
 

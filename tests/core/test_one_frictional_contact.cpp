@@ -2,6 +2,7 @@
 // One contact with friction, where the solution is known in closed form: every law of the registry on thousands of
 // random problems.
 #include "check.hpp"
+#include "push_by_hand.hpp"
 #include "scene.hpp"
 #include "solver/solver.hpp"
 
@@ -51,7 +52,7 @@ struct Rubbing {
     contacts[0].impulse = normal;
     slides[0].impulse = tangential;
     nscd::apply_impulse(contacts[0], normal, bodies.data());
-    nscd::apply_tangential<M>(contacts[0], tangential, response, bodies.data(), spins.data());
+    push_by_hand<M>(contacts[0], tangential, response, bodies, spins);
   }
 
   void solve(const nscd::SolverEntry &solver, double tol, int maxiter)

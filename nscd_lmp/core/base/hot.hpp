@@ -19,3 +19,5 @@
 
 // For what a hot loop calls: it must be compiled with the loop, for the same instruction set.
 #define NSCD_INLINE inline __attribute__((always_inline))
+// The same for a lambda, after its parameters.
+#define NSCD_INLINED __attribute__((always_inline))

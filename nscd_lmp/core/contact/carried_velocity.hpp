@@ -3,7 +3,7 @@
 // Solvers with momentum keep the impulses of the sweep before in the same layout.
 #pragma once
 
-#include "contact/friction.hpp"
+#include "contact/discs.hpp"
 
 #include <cstddef>
 #include <cstring>
@@ -12,14 +12,14 @@ namespace nscd {
 
 // Doubles a contact takes there: the normal velocity, then the tangential one.
 template <class Tangent>
-constexpr std::size_t carried_doubles = sizeof(Tangent) / sizeof(double) + 1;
+constexpr std::size_t carried_doubles = (disc_count<Tangent> > 0 ? sizeof(Tangent) / sizeof(double) : 0) + 1;
 
 template <class Tangent>
 NSCD_INLINE Split<Tangent> load_carried(const double *at)
 {
   Split<Tangent> v;
   v.n = *at;
-  std::memcpy(&v.t, at + 1, sizeof(Tangent));
+  if constexpr (disc_count<Tangent> > 0) std::memcpy(static_cast<void *>(&v.t), at + 1, sizeof(Tangent));
   return v;
 }
 
@@ -27,7 +27,7 @@ template <class Tangent>
 NSCD_INLINE void store_carried(double *at, const Split<Tangent> &v)
 {
   *at = v.n;
-  std::memcpy(at + 1, &v.t, sizeof(Tangent));
+  if constexpr (disc_count<Tangent> > 0) std::memcpy(at + 1, &v.t, sizeof(Tangent));
 }
 
 }    // namespace nscd

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "problem/block_matrix.hpp"
 
+#include "base/error.hpp"
 #include "base/hot.hpp"
 
 namespace nscd {
@@ -25,9 +26,15 @@ NSCD_HOT void multiply_blocks(const BlockMatrix &a, const double *x, double *y)
 
 void BlockMatrix::multiply(const double *x, double *y) const
 {
-  if (dim == 1) multiply_blocks<1>(*this, x, y);
-  if (dim == 2) multiply_blocks<2>(*this, x, y);
-  if (dim == 3) multiply_blocks<3>(*this, x, y);
+  switch (dim) {
+    case 1: return multiply_blocks<1>(*this, x, y);
+    case 2: return multiply_blocks<2>(*this, x, y);
+    case 3: return multiply_blocks<3>(*this, x, y);
+    case 4: return multiply_blocks<4>(*this, x, y);
+    case 5: return multiply_blocks<5>(*this, x, y);
+    case 6: return multiply_blocks<6>(*this, x, y);
+    default: fail("contacts have 1 to 6 unknowns, not ", dim);
+  }
 }
 
 const double *BlockMatrix::diagonal(std::size_t row) const

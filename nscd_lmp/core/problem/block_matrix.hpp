@@ -9,7 +9,7 @@
 namespace nscd {
 
 struct BlockMatrix {
-  int dim = 1;                             // blocks are dim x dim: 1, 2 or 3
+  int dim = 1;                             // blocks are dim x dim
   std::vector<std::int64_t> row_start{0};  // (rows + 1) into column
   std::vector<std::int32_t> column{};      // (blocks)
   std::vector<double> block{};             // (blocks, dim, dim), row by row

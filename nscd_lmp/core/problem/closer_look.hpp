@@ -12,7 +12,10 @@
 
 namespace nscd {
 
-// Fills these of `seen`; problem.infos are there, here or on another rank. Collective.
+// Fills these of `seen`; problem.infos are there, here or on another rank. Collective. Defined in closer_look_of.hpp.
+template <class M>
+void look_closer(const Problem &problem, const M &mechanics, Criterion &seen);
+// For whom the mechanics are of no matter.
 void look_closer(const Problem &problem, Criterion &seen);
 
 }    // namespace nscd

@@ -19,6 +19,7 @@
 // A sum says nothing of a single contact: closer_look.hpp.
 #pragma once
 
+#include "contact/frame.hpp"
 #include "problem/global_problem.hpp"
 #include "problem/problem.hpp"
 
@@ -42,8 +43,22 @@ bool is_met_by_sums(const Criterion &criterion, const Goal &goal);
 // `local_velocity`: the (1 + e) v~ that a local solver carries, one a contact (with friction as carried_velocity.hpp
 // lays them out), or nullptr if it carries none.
 Criterion measure(const Problem &problem, const double *local_velocity = nullptr);
+// The same for whom knows the mechanics; defined in criterion_of.hpp, where another mechanics finds it.
+template <class M>
+Criterion measure(const Problem &problem, const M &mechanics, const double *local_velocity);
 
-// The same of p with the velocities u (n, dim) that it gives.
+// The same of p with the velocities u (n, dim) that it gives; F is the frame of the contacts.
+template <class F>
+Criterion measure(const GlobalProblem &problem, const F &frame, const double *u, const double *local_velocity);
+
+// For whom the frame is of no matter.
 Criterion measure(const GlobalProblem &problem, const double *u, const double *local_velocity = nullptr);
+
+extern template Criterion measure(const Problem &, const Frictionless &, const double *);
+extern template Criterion measure(const Problem &, const Frictional<Planar> &, const double *);
+extern template Criterion measure(const Problem &, const Frictional<Spatial> &, const double *);
+extern template Criterion measure(const GlobalProblem &, const Frame<> &, const double *, const double *);
+extern template Criterion measure(const GlobalProblem &, const Frame<1> &, const double *, const double *);
+extern template Criterion measure(const GlobalProblem &, const Frame<2> &, const double *, const double *);
 
 }    // namespace nscd

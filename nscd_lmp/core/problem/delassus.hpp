@@ -12,14 +12,17 @@ namespace nscd {
 // The contact problem of grains, posed by its matrix along N and tangents().
 class AssembledProblem {
  public:
-  explicit AssembledProblem(const Problem &grains);
+  // Defined in delassus_of.hpp, where a mechanics that is not a scene's finds it.
+  template <class M>
+  AssembledProblem(const Problem &grains, const M &mechanics);
   AssembledProblem(const AssembledProblem &) = delete;
   AssembledProblem &operator=(const AssembledProblem &) = delete;
 
   GlobalProblem &problem() { return problem_; }
 
   // Hands the solution to contacts and bodies.
-  void write_back(Problem &grains) const;
+  template <class M>
+  void write_back(Problem &grains, const M &mechanics) const;
 
  private:
   BlockMatrix w_;

@@ -6,6 +6,7 @@
 // it made from the bodies (delassus.hpp). Vectors are laid out contact by contact, N, T1[, T2].
 #pragma once
 
+#include "contact/majorant.hpp"
 #include "contact/material.hpp"
 #include "problem/block_matrix.hpp"
 
@@ -15,16 +16,10 @@
 
 namespace nscd {
 
-// A contact's own block of W as local laws see it: diag(w, wt[, wt]) >= the block, equal for spheres and discs.
-struct Diagonal {
-  double w = 0, wt = 0;  // 1/kg; 0: nothing that an impulse could move
-  bool exact = true;     // whether it is the block
-};
-
 struct GlobalProblem {
   const BlockMatrix &w;            // 1/kg
   std::span<const double> q;       // (n, dim) velocities without impulses, biases included, m/s
-  std::span<const double> mu;      // (n) Coulomb's coefficients, infinite for stick; empty if dim = 1
+  std::span<const double> mu;      // (n, discs) coefficients, infinite for stick; empty if dim = 1
   std::span<double> p;             // (n, dim) in: start impulses; out: solution, N s
   MaterialsOf restitution{};       // (n) that q contains: scales v in the criterion, as in Problem; or empty
   std::vector<Diagonal> diagonals{};  // (n), by find_diagonals()
@@ -32,10 +27,25 @@ struct GlobalProblem {
 
   int dim() const { return w.dim; }
   std::size_t contacts() const { return w.rows(); }
+  // Of contacts that have one disc or none.
   double friction(std::size_t k) const { return mu.empty() ? 0.0 : mu[k]; }
 };
 
-void find_diagonals(GlobalProblem &problem);
+// F is the frame of the contacts.
+template <class F>
+void find_diagonals(GlobalProblem &problem)
+{
+  problem.diagonals.assign(problem.contacts(), {});
+  for (std::size_t k = 0; k < problem.contacts(); ++k)
+    if (const double *block = problem.w.diagonal(k)) problem.diagonals[k] = majorant<F>(block);
+}
+
+// What a visit of contact k takes.
+template <class F>
+OwnBlock<typename F::Tangent> own_block(const GlobalProblem &problem, std::size_t k)
+{
+  return own_block<F>(problem.diagonals[k], problem.mu.data() + k * F::discs);
+}
 
 // ||q||_2 of the contacts that an impulse can move, m/s.
 double free_norm(const GlobalProblem &problem);

@@ -2,7 +2,7 @@
 // The natural map of a contact, in velocities: 0 where its law holds.
 #pragma once
 
-#include "contact/friction.hpp"
+#include "contact/discs.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 
 #include "base/storage.hpp"
 #include "contact/contact.hpp"
-#include "contact/friction.hpp"
+#include "contact/mechanics.hpp"
 #include "contact/material.hpp"
 #include "problem/islands.hpp"
 
@@ -26,7 +26,7 @@ struct Joined {
 struct Workspace {
   std::vector<double> numbers{};
   std::vector<double> best{};  // impulses to come back to
-  std::vector<double> normals{};
+  std::vector<double> normals{}, numbers_of_normals{};   // of sweeps along normals alone
   AlignedVector<Vec4> vectors{}, more_vectors{};
   std::vector<char> marks{};   // of bodies
   std::vector<std::int32_t> nearby{};   // contacts
@@ -71,5 +71,12 @@ struct Problem {
   bool sums_paper = true;   // whether (42) is wanted beside the natural map, which looks on the way can do without
   Goal goal{};
 };
+
+// Calls f with the mechanics of the problem's contacts.
+template <class Function>
+auto with_mechanics(const Problem &problem, Function f)
+{
+  return with_mechanics(problem.sliding, problem.bodies.data(), f);
+}
 
 }    // namespace nscd

@@ -79,6 +79,8 @@ class Column : public Columns::Any {
   T *end() { return data() + size(); }
   const T *begin() const { return data(); }
   const T *end() const { return data() + size(); }
+  std::span<T> all() { return {data(), size()}; }
+  std::span<const T> all() const { return {data(), size()}; }
 
  protected:
   Column(Columns &table, Starts starts) : Any(table, starts) {}

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "contact/contact.hpp"
-#include "contact/friction.hpp"
+#include "contact/mechanics.hpp"
 #include "contact/material.hpp"
 #include "scene/columns.hpp"
 
@@ -15,8 +15,8 @@ namespace nscd {
 struct ContactTable : Columns {
   Column<Contact> contacts{*this};
   Column<ContactInfo> infos{*this};
-  ColumnAtTimes<Planar::Slide> planar{*this};         // with friction one of the two
-  ColumnAtTimes<Spatial::Slide> spatial{*this};
+  ColumnAtTimes<Slide<Planar>> planar{*this};         // with friction one of the two
+  ColumnAtTimes<Slide<Spatial>> spatial{*this};
   ColumnAtTimes<MaterialNumber> material{*this};      // where something looks at it beside mu, which slides have
   ColumnAtTimes<double> per_approach{*this};          // 1 / the approach that a step may leave, s/m; or closed: any
   // Of impacts that are resolved ahead of the contacts, while and after they are: N s.

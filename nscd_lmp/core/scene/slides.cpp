@@ -107,7 +107,7 @@ void add_impulse(State &s, std::size_t k, double normal, const Vec4 &tangential)
   with_friction(s.friction.model, [&]<class M>(M) {
     const auto dp = M::from_space(c.normal, tangential);
     s.table.slides<M>()[k].impulse += dp;
-    apply_tangential<M>(c, dp, s.friction.spin_response, s.motion.bodies.data(), s.motion.spins.data());
+    sliding(s).mechanics<M>(s.motion.bodies.data()).template push_part<0>(c, k, dp);
   });
 }
 

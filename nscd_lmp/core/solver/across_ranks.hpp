@@ -30,12 +30,13 @@ class SplitMasses {
 };
 
 // The criterion with true masses; single contacts and islands are looked at where the sums meet the goal.
-inline Criterion measure_across(Problem &problem, const Goal &goal, const double *carried = nullptr)
+template <class M>
+Criterion measure_across(Problem &problem, const M &mechanics, const Goal &goal, const double *carried = nullptr)
 {
   problem.goal = goal;
-  if (!problem.halo) return measure(problem, carried);
+  if (!problem.halo) return measure(problem, mechanics, carried);
   problem.halo->join(problem.bodies, problem.contacts);
-  const Criterion seen = measure(problem, carried);
+  const Criterion seen = measure(problem, mechanics, carried);
   problem.halo->split(problem.bodies, problem.contacts);
   return seen;
 }
@@ -77,7 +78,9 @@ SolverReport solve_by_ranks(Problem &problem, const SolverOptions &options, Solv
     change_across(problem.halo, problem.bodies, problem.sliding.spins, [&] { problem.halo->together(solve); });
     return 0.0;   // always worth a look
   };
-  return iterate(extent(problem), options, once, [&](const Goal &goal) { return measure_across(problem, goal); });
+  return iterate(extent(problem), options, once, [&](const Goal &goal) {
+    return with_mechanics(problem, [&](const auto &mechanics) { return measure_across(problem, mechanics, goal); });
+  });
 }
 
 }    // namespace nscd

@@ -11,21 +11,22 @@
 
 namespace nscd {
 
-// On grains; M is Planar or Spatial.
+// On grains.
 template <class M>
 class BestImpulses {
   using Tangent = typename M::Tangent;
+  using Vector = typename M::Vector;
   static constexpr std::size_t width = carried_doubles<Tangent>;
 
  public:
   static constexpr bool keeps = true;
-  explicit BestImpulses(Problem &problem) : problem_(problem) {}
+  BestImpulses(Problem &problem, const M &mechanics) : problem_(problem), mechanics_(mechanics) {}
 
   void keep()
   {
     kept_.resize(count() * width);
     for (std::size_t k = 0; k < count(); ++k)
-      store_carried<Tangent>(&kept_[k * width], {problem_.contacts[k].impulse, slide(k).impulse});
+      store_carried<Tangent>(&kept_[k * width], mechanics_.impulse(problem_.contacts[k], k));
   }
 
   // Bodies get what the impulses change by.
@@ -38,19 +39,16 @@ class BestImpulses {
 
  private:
   std::size_t count() const { return problem_.contacts.size(); }
-  auto &slide(std::size_t k) { return problem_.sliding.slides<M>()[k]; }
   void restore(std::size_t k)
   {
     Contact &c = problem_.contacts[k];
-    const Split<Tangent> p = load_carried<Tangent>(&kept_[k * width]);
-    apply_impulse(c, p.n - c.impulse, problem_.bodies.data());
-    apply_tangential<M>(c, p.t - slide(k).impulse, problem_.sliding.spin_response, problem_.bodies.data(),
-                        problem_.sliding.spins);
-    c.impulse = p.n;
-    slide(k).impulse = p.t;
+    const Vector p = load_carried<Tangent>(&kept_[k * width]), now = mechanics_.impulse(c, k);
+    mechanics_.push(c, k, {p.n - now.n, p.t - now.t});
+    mechanics_.set_impulse(c, k, p);
   }
 
   Problem &problem_;
+  const M &mechanics_;
   std::vector<double> &kept_ = problem_.workspace.best;
 };
 

@@ -2,6 +2,7 @@
 // Impulses and what they do, to come back to.
 #pragma once
 
+#include "contact/carried_velocity.hpp"
 #include "problem/global_problem.hpp"
 #include "problem/problem.hpp"
 
@@ -12,36 +13,40 @@ namespace nscd {
 
 class IterateKept {
  public:
-  void keep(const Problem &problem)
+  template <class M>
+  void keep(const Problem &problem, const M &mechanics)
   {
+    constexpr std::size_t width = carried_doubles<typename M::Tangent>;
     bodies_.assign(problem.bodies.begin(), problem.bodies.end());
-    contacts_.assign(problem.contacts.begin(), problem.contacts.end());
-    with_friction(problem.sliding.model, [&]<class M>(M) {
-      const auto *const slides = problem.sliding.slides<M>();
-      spins_.assign(problem.sliding.spins, problem.sliding.spins + problem.bodies.size());
-      tangential_.clear();
-      for (std::size_t k = 0; k < problem.contacts.size(); ++k)
-        tangential_.push_back(M::in_space(problem.contacts[k].normal, slides[k].impulse));
-    });
+    if (problem.sliding.spins) spins_.assign(problem.sliding.spins, problem.sliding.spins + problem.bodies.size());
+    impulses_.resize(problem.contacts.size() * width);
+    for (std::size_t k = 0; k < problem.contacts.size(); ++k)
+      store_carried<typename M::Tangent>(&impulses_[k * width], mechanics.impulse(problem.contacts[k], k));
   }
-  void restore(Problem &problem) const
+  template <class M>
+  void restore(Problem &problem, const M &mechanics) const
   {
+    constexpr std::size_t width = carried_doubles<typename M::Tangent>;
     std::copy(bodies_.begin(), bodies_.end(), problem.bodies.begin());
-    std::copy(contacts_.begin(), contacts_.end(), problem.contacts.begin());
     std::copy(spins_.begin(), spins_.end(), problem.sliding.spins);
-    with_friction(problem.sliding.model, [&]<class M>(M) {
-      for (std::size_t k = 0; k < tangential_.size(); ++k)
-        problem.sliding.slides<M>()[k].impulse = M::from_space(problem.contacts[k].normal, tangential_[k]);
-    });
+    for (std::size_t k = 0; k < problem.contacts.size(); ++k)
+      mechanics.set_impulse(problem.contacts[k], k, load_carried<typename M::Tangent>(&impulses_[k * width]));
   }
 
-  void keep(const GlobalProblem &problem) { impulses_.assign(problem.p.begin(), problem.p.end()); }
-  void restore(GlobalProblem &problem) const { std::copy(impulses_.begin(), impulses_.end(), problem.p.begin()); }
+  template <class F>
+  void keep(const GlobalProblem &problem, const F &)
+  {
+    impulses_.assign(problem.p.begin(), problem.p.end());
+  }
+  template <class F>
+  void restore(GlobalProblem &problem, const F &) const
+  {
+    std::copy(impulses_.begin(), impulses_.end(), problem.p.begin());
+  }
 
  private:
   AlignedVector<Body> bodies_;
-  AlignedVector<Vec4> spins_, tangential_;
-  std::vector<Contact> contacts_;
+  AlignedVector<Vec4> spins_;
   std::vector<double> impulses_;
 };
 

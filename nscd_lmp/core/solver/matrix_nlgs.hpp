@@ -2,7 +2,7 @@
 // Nonlinear Gauss-Seidel over the rows of a Delassus matrix: what nlgs.hpp does where there are no bodies.
 //
 // Local laws take a contact's own block as diag(W_nn, W_tt[, W_tt]), which is exact for spheres and discs. Where it is
-// not, they get a diagonal that is larger than the block (global_problem.hpp) and visit the contact again, with the
+// not, they get a diagonal that is larger than the block (majorant.hpp) and visit the contact again, with the
 // block itself for the velocities, until a visit changes little: a proximal iteration inside the visit.
 #pragma once
 
@@ -40,12 +40,10 @@ class MatrixSweeps {
   {
     problem_.w.multiply(problem_.p.data(), u_.data());
     for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += problem_.q[i];
-    return measure(problem_, u_.data(), Law::carries_velocity ? carried_.data() : nullptr);
+    return measure(problem_, F{}, u_.data(), Law::carries_velocity ? carried_.data() : nullptr);
   }
 
  private:
-  static constexpr int most_visits = 20;
-
   Vector velocity(std::size_t k) const
   {
     const BlockMatrix &w = problem_.w;
@@ -70,33 +68,33 @@ class MatrixSweeps {
     return F::load(out);
   }
 
-  FrictionalLocal<Tangent> apply_law(const FrictionalLocal<Tangent> &now, const Vector &v, const OwnBlock &own,
+  FrictionalLocal<Tangent> apply_law(const FrictionalLocal<Tangent> &now, const Vector &v, const OwnBlock<Tangent> &own,
                                      double share) const
   {
     if constexpr (F::dim > 1) {
       return visit_partly<Law>(now, v, own, parameter_, share);
     } else {
       const Local next = Law::visit(Local{now.p.n, now.v.n}, v.n, own.w_inverse, parameter_);
-      return {{next.impulse, 0}, {next.velocity, 0}};
+      return {{next.impulse, {}}, {next.velocity, {}}};
     }
   }
 
   double visit(std::size_t k, double share)
   {
-    const Diagonal &d = problem_.diagonals[k];
-    const OwnBlock own{d.w, d.wt, 1 / d.w, 1 / d.wt, d.wt / d.w, problem_.friction(k)};
+    const bool exact = problem_.diagonals[k].exact;
+    const OwnBlock<Tangent> own = own_block<F>(problem_, k);
     const Vector start = F::load(&problem_.p[k * F::dim]);
     Vector v = velocity(k);
     FrictionalLocal<Tangent> now{start, {}};
     if constexpr (Law::carries_velocity) now.v = load_carried<Tangent>(&carried_[k * F::carried]);
     double first = 0;
-    for (int times = 0; times < (d.exact ? 1 : most_visits); ++times) {
+    for (int times = 0; times < (exact ? 1 : most_visits); ++times) {
       const FrictionalLocal<Tangent> next = apply_law(now, v, own, share);
       const Vector dp{next.p.n - now.p.n, next.p.t - now.p.t};
       now = next;
-      const double change = own.w * std::abs(dp.n) + own.wt * length(dp.t);
+      const double change = most_of(own, dp);
       if (times == 0) first = change;
-      if (d.exact || !(change > 1e-2 * first)) break;
+      if (exact || !(change > 1e-2 * first)) break;
       const Vector dv = response(problem_.w.diagonal(k), dp);
       v = {v.n + dv.n, v.t + dv.t};
     }
@@ -111,11 +109,13 @@ class MatrixSweeps {
 };
 
 template <class Law>
-SolverReport matrix_nlgs(GlobalProblem &problem, const SolverOptions &options)
-{
-  SolverReport report;
-  find_diagonals(problem);
-  with_frame(problem.dim(), [&]<class F>(F) {
+struct MatrixNlgs {
+  static constexpr double default_parameter = 1;   // as Nlgs
+
+  template <class F>
+  static SolverReport solve(GlobalProblem &problem, const F &, const SolverOptions &options)
+  {
+    find_diagonals<F>(problem);
     MatrixSweeps<Law, F> sweeps(problem, options.parameter);
     Relaxation relaxation;
     const auto once = [&] {
@@ -126,10 +126,9 @@ SolverReport matrix_nlgs(GlobalProblem &problem, const SolverOptions &options)
     };
     const auto look = [&](const Goal &) { return sweeps.look(); };
     const Extent all{problem.contacts(), free_norm(problem)};
-    if constexpr (F::dim > 1) report = iterate(all, options, once, look, BestMatrixImpulses(problem));
-    else report = iterate(all, options, once, look);
-  });
-  return report;
-}
+    if constexpr (F::dim > 1) return iterate(all, options, once, look, BestMatrixImpulses(problem));
+    else return iterate(all, options, once, look);
+  }
+};
 
 }    // namespace nscd

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Nonlinear Gauss-Seidel (section 3.2): sweep over the contacts, solve each with the others held, until the
-// criterion is met. The local law is a template argument, so each law gets its own inlined loop; so is the model, so
+// criterion is met. The local law is a template argument, so each law gets its own inlined loop. So are the mechanics:
 // a frictionless sweep knows nothing of friction.
 //
 // Makes exact: the motion (bodies always carry the impulses of the contacts). Fails by stalling: the sweeps
@@ -17,6 +17,7 @@
 #include "base/hot.hpp"
 #include "contact/carried_velocity.hpp"
 #include "solver/across_ranks.hpp"
+#include "solver/any_mechanics.hpp"
 #include "solver/best_impulses.hpp"
 #include "solver/iterate.hpp"
 #include "solver/matrix_nlgs.hpp"
@@ -64,48 +65,53 @@ NSCD_HOT Swept sweep(Problem &problem, const Range &range, [[maybe_unused]] doub
   return {corrected, against};
 }
 
-// A visit of a frictional contact that does `share` of its step.
+// A visit of a contact that does `share` of its step.
 template <class Law, class M, class Local>
-NSCD_INLINE Local visit_contact(const Contact &c, const Local &now, const Split<typename M::Tangent> &v,
-                                const OwnBlock &own, double parameter, double share)
+NSCD_INLINE Local visit_contact(const Contact &c, const Local &now, const typename M::Vector &v,
+                                const typename M::Own &own, double parameter, double share)
 {
   Local next = visit_partly<Law>(now, v, own, parameter, share);
   if constexpr (Law::carries_velocity) {
     // A part along the normal would go from p_t to u_t and back, and grow.
-    next.p.t = M::tangential(c.normal, next.p.t);
-    next.v.t = M::tangential(c.normal, next.v.t);
+    next.p.t = M::tangential(c, next.p.t);
+    next.v.t = M::tangential(c, next.v.t);
   }
   return next;
 }
 
-// The same with friction; M is Planar or Spatial. Visits do `share` of their step.
+// Of the corrections of a visit, by components; what is no push is its own.
+template <class Wrench, class Tangent>
+NSCD_INLINE Vec4 corrections(const Wrench &wrench, const Tangent &slid)
+{
+  Vec4 sum = magnitudes(wrench.push);
+  for_each_disc([&](std::size_t d, const auto &one) NSCD_INLINED {
+    if (d > 0) sum[0] += length(one);
+  }, slid);
+  return sum;
+}
+
+// The same with friction, and whatever parts contacts have. Visits do `share` of their step.
 template <class Law, class M, bool accelerated = false>
-NSCD_HOT Swept frictional_sweep(Problem &problem, const Range &range, [[maybe_unused]] double *carried,
-                                double parameter, double share, const Momentum &momentum = {})
+NSCD_HOT Swept frictional_sweep(Problem &problem, const M &given, const Range &range,
+                                [[maybe_unused]] double *carried, double parameter, double share,
+                                const Momentum &momentum = {})
 {
   [[maybe_unused]] const double gain = 1 + momentum.share();
   [[maybe_unused]] double *const previous = momentum.previous;
   using Tangent = typename M::Tangent;
-  Body *const bodies = problem.bodies.data();
-  Vec4 *const spins = problem.sliding.spins;
-  auto *const slides = problem.sliding.template slides<M>();
-  const double response = problem.sliding.spin_response, ratio = 1 + response, ratio_inverse = 1 / ratio;
+  using Vector = typename M::Vector;
+  const M mechanics = given;   // whose members no store can change
+  Contact *const contacts = problem.contacts.data();
   alignas(vec4_alignment) Vec4 corrected{};
-  double against = 0;
+  double against = 0, factor = 1;
   for (std::size_t k = range.first; k < range.last; ++k) {
-    Contact &c = problem.contacts[k];
-    const Contact &soon = problem.contacts[std::min(k + fetch_ahead, range.last - 1)];
-    fetch_bodies(soon, bodies);
-    fetch_bodies(soon, spins);
-    auto &slide = slides[k];
-    const Body bi = bodies[c.i], bj = bodies[c.j];
-    const Tangent si = M::spin(spins[c.i]), sj = M::spin(spins[c.j]);
-    const Vec4 difference = bi - bj;
-    const double vn = dot(c.normal, difference), w = bi[3] + bj[3];
-    const Split<Tangent> v{vn + c.bias, M::slip(c.normal, difference, vn, si + sj) + bias(slide)};
-    const OwnBlock own{w, w * ratio, c.w_inverse, c.w_inverse * ratio_inverse, ratio, slide.mu};
-    FrictionalLocal<Tangent> now{{c.impulse, slide.impulse}, {}};
-    [[maybe_unused]] const Split<Tangent> last = now.p;
+    Contact &c = contacts[k];
+    mechanics.prefetch(contacts[std::min(k + fetch_ahead, range.last - 1)]);
+    auto pair = mechanics.load(c, k);
+    const Vector v = mechanics.velocity(c, k, pair);
+    const auto own = mechanics.own(c, k, pair.mobility());
+    FrictionalLocal<Tangent> now{mechanics.impulse(c, k), {}};
+    [[maybe_unused]] const Vector last = now.p;
     if constexpr (accelerated) {
       double *const place = previous + k * carried_doubles<Tangent>;
       now.p = part_way(load_carried<Tangent>(place), last, gain);
@@ -114,74 +120,85 @@ NSCD_HOT Swept frictional_sweep(Problem &problem, const Range &range, [[maybe_un
     if constexpr (Law::carries_velocity) now.v = load_carried<Tangent>(carried + k * carried_doubles<Tangent>);
     FrictionalLocal<Tangent> next = visit_contact<Law, M>(c, now, v, own, parameter, share);
     // Visits do not feel a part along the normal, and momentum makes it grow.
-    if constexpr (accelerated) next.p.t = M::tangential(c.normal, next.p.t);
+    if constexpr (accelerated) next.p.t = M::tangential(c, next.p.t);
+    const Vector change{next.p.n - now.p.n, next.p.t - now.p.t};
+    const auto wrench = mechanics.wrench(c, k, pair, change);
+    pair.add(wrench);
+    if constexpr (!M::diagonal) {
+      const double first = most_of(own, change);
+      Vector by = change;
+      for (int times = 1; times < most_visits && most_of(own, by) > 1e-2 * first; ++times) {
+        const FrictionalLocal<Tangent> before = next;
+        next = visit_contact<Law, M>(c, before, mechanics.velocity(c, k, pair), own, parameter, share);
+        by = {next.p.n - before.p.n, next.p.t - before.p.t};
+        pair.add(mechanics.wrench(c, k, pair, by));
+      }
+    }
     if constexpr (Law::carries_velocity) store_carried<Tangent>(carried + k * carried_doubles<Tangent>, next.v);
-    c.impulse = next.p.n;
-    slide.impulse = next.p.t;
-    const Tangent slid = next.p.t - now.p.t, turn = M::turned(c.normal, slid) * response;
-    const Vec4 push = c.normal * (next.p.n - now.p.n) + M::in_space(c.normal, slid);
-    if constexpr (accelerated)
-      against -= w * ((next.p.n - now.p.n) * (next.p.n - last.n) + ratio * inner(slid, next.p.t - last.t));
-    bodies[c.i] = bi + push * bi[3];
-    bodies[c.j] = bj - push * bj[3];
-    M::set_spin(spins[c.i], si - turn * bi[3]);
-    M::set_spin(spins[c.j], sj - turn * bj[3]);
-    corrected += magnitudes(push) * w;
+    if constexpr (accelerated) against -= own.w * weighed(own, change, next.p, last);
+    mechanics.store(c, pair);
+    mechanics.set_impulse(c, k, next.p);
+    corrected += corrections(wrench, change.t) * own.w;
+    factor = own.discs[0].ratio;
   }
   // Between the mean of normal and tangential corrections; a root a contact would cost a tenth of the sweep.
-  return {0.5 * (1 + ratio) * (corrected[0] + corrected[1] + corrected[2]), against};
-}
-
-template <class Law, class M>
-SolverReport nlgs_with_friction(Problem &problem, const SolverOptions &options)
-{
-  double *carried = nullptr;
-  if constexpr (Law::carries_velocity) {
-    problem.workspace.numbers.assign(problem.contacts.size() * carried_doubles<typename M::Tangent>, 0.0);
-    carried = problem.workspace.numbers.data();
-  }
-  Relaxation relaxation;
-  const auto once = [&] {
-    const double share = relaxation.share();
-    const Swept swept = sweep_across(problem, [&](const Range &range) {
-      return frictional_sweep<Law, M>(problem, range, carried, options.parameter, share);
-    });
-    relaxation.look(swept.corrected / share);
-    return swept.corrected / share;
-  };
-  int extra = 0;   // sweeps along normals alone
-  const auto look = [&](const Goal &goal) { return measure_parted(problem, options, goal, extra, carried); };
-  SolverReport report = iterate(extent(problem), options, once, look, BestImpulses<M>(problem));
-  report.iterations += extra;
-  return report;
+  return {0.5 * (1 + factor) * (corrected[0] + corrected[1] + corrected[2]), against};
 }
 
 template <class Law>
-SolverReport nlgs_without_friction(Problem &problem, const SolverOptions &options)
-{
-  double *carried = nullptr;
-  if constexpr (Law::carries_velocity) {
-    problem.workspace.numbers.assign(problem.contacts.size(), 0.0);
-    carried = problem.workspace.numbers.data();
-  }
-  const auto once = [&] {
-    const auto some = [&](const Range &range) { return sweep<Law>(problem, range, carried, options.parameter); };
-    return sweep_across(problem, some).corrected;
-  };
-  return iterate(extent(problem), options, once,
-                 [&](const Goal &goal) { return measure_across(problem, goal, carried); });
-}
+struct Nlgs {
+  static constexpr double default_parameter = 1;   // of laws that another solver sweeps by
 
-template <class Law>
-SolverReport nlgs(Problem &problem, const SolverOptions &options)
-{
-  SolverReport report;
-  SplitMasses split(problem);
-  if (problem.sliding.model == Model::frictionless) return nlgs_without_friction<Law>(problem, options);
-  with_friction(problem.sliding.model,
-                [&]<class M>(M) { report = nlgs_with_friction<Law, M>(problem, options); });
-  return report;
-}
+  template <class M>
+  static SolverReport solve(Problem &problem, const M &mechanics, const SolverOptions &options)
+  {
+    SplitMasses split(problem);
+    if constexpr (M::parts == 0) return without_friction(problem, mechanics, options);
+    else return with_parts(problem, mechanics, options);
+  }
+
+ private:
+  static double *carried(Problem &problem, std::size_t doubles)
+  {
+    if constexpr (!Law::carries_velocity) return nullptr;
+    problem.workspace.numbers.assign(problem.contacts.size() * doubles, 0.0);
+    return problem.workspace.numbers.data();
+  }
+
+  template <class M>
+  static SolverReport with_parts(Problem &problem, const M &mechanics, const SolverOptions &options)
+  {
+    double *const velocities = carried(problem, carried_doubles<typename M::Tangent>);
+    Relaxation relaxation;
+    const auto once = [&] {
+      const double share = relaxation.share();
+      const Swept swept = sweep_across(problem, [&](const Range &range) {
+        return frictional_sweep<Law, M>(problem, mechanics, range, velocities, options.parameter, share);
+      });
+      relaxation.look(swept.corrected / share);
+      return swept.corrected / share;
+    };
+    int extra = 0;   // sweeps along normals alone
+    const auto look = [&](const Goal &goal) {
+      return measure_parted(problem, mechanics, options, goal, extra, velocities);
+    };
+    SolverReport report = iterate(extent(problem), options, once, look, BestImpulses<M>(problem, mechanics));
+    report.iterations += extra;
+    return report;
+  }
+
+  template <class M>
+  static SolverReport without_friction(Problem &problem, const M &mechanics, const SolverOptions &options)
+  {
+    double *const velocities = carried(problem, 1);
+    const auto once = [&] {
+      const auto some = [&](const Range &range) { return sweep<Law>(problem, range, velocities, options.parameter); };
+      return sweep_across(problem, some).corrected;
+    };
+    return iterate(extent(problem), options, once,
+                   [&](const Goal &goal) { return measure_across(problem, mechanics, goal, velocities); });
+  }
+};
 
 // What a local law tells the registry, as in SolverEntry.
 struct LocalLawEntry {
@@ -202,8 +219,8 @@ SolverEntry local_law(const LocalLawEntry &law)
           .default_parameter = law.default_parameter,
           .friction = true,
           .ranks = true,
-          .solve = nlgs<Law>,
-          .solve_global = matrix_nlgs<Law>};
+          .solve = on_any_grains<Nlgs<Law>>,
+          .solve_global = on_any_matrix<MatrixNlgs<Law>>};
 }
 
 }    // namespace nscd

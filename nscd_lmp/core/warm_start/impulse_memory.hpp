@@ -19,25 +19,12 @@ namespace nscd {
 // How many contacts ahead a loop asks for an entry.
 constexpr std::size_t prefetch_distance = 12;
 
-struct NormalImpulse {
+// What a contact is remembered by: its key, its impulse along the normal and in its discs and, where that turns with
+// it, its normal (remembered.hpp). With friction in space one cache line.
+template <std::size_t count>
+struct Remembered {
   std::uint64_t key = 0;
-  double normal = 0;  // N s
-};
-
-// With friction in the plane: the tangent (-n_y, n_x) turns with the normal and brings the impulse along. Seen from the
-// other grain both tangent and impulse change sign, so the number stays.
-struct PlanarImpulse {
-  std::uint64_t key = 0;
-  double normal = 0;
-  double tangential = 0;
-};
-
-// With friction in space the normal that the tangential impulse was perpendicular to is needed. One cache line.
-struct SpatialImpulse {
-  std::uint64_t key = 0;
-  double normal = 0;
-  double tangential[3] = {};
-  double direction[3] = {};
+  std::array<double, count> numbers{};
 };
 
 // The grains of a contact's key (contact_geometry.hpp), the lower tag first; 0 for a wall.

@@ -8,6 +8,7 @@
 #include "warm_start/warm_start.hpp"
 
 #include "parallel/halo.hpp"
+#include "warm_start/memory_of_model.hpp"
 
 #include <algorithm>
 #include <map>
@@ -97,11 +98,7 @@ void follow(Halo &halo, ImpulseMemory<Entry> &memory)
 
 void WarmStart::follow_grains(Halo &halo, Model model)
 {
-  switch (model) {
-    case Model::frictionless: follow(halo, normal_); break;
-    case Model::planar: follow(halo, planar_); break;
-    case Model::spatial: follow(halo, spatial_); break;
-  }
+  with_entry(model, [&]<class E>(E) { follow(halo, std::get<ImpulseMemory<E>>(memories_)); });
 }
 
 }    // namespace nscd

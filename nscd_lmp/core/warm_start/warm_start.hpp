@@ -3,17 +3,18 @@
 #pragma once
 
 #include "scene/state.hpp"
-#include "warm_start/impulse_memory.hpp"
+#include "warm_start/remembered.hpp"
 
 #include <functional>
 #include <span>
+#include <tuple>
 
 namespace nscd {
 
 class WarmStart {
  public:
   // Keeps the impulses of all contacts.
-  void remember(const State &state);
+  void remember(State &state);
   // Gives the contacts from `first` on their start impulses, and the bodies what those do.
   void recall(State &state, std::size_t first) const;
   // Everything that is remembered, contact by contact: the tags of its grains, the lower one 0 for a wall, and `words`
@@ -26,21 +27,11 @@ class WarmStart {
   void follow_grains(Halo &halo, Model model);
 
  private:
-  void recall_normal(State &state, std::size_t first) const;
+  template <class M>
+  using Memory = ImpulseMemory<Entry<M>>;
 
   // One of them is used, the others stay empty.
-  ImpulseMemory<NormalImpulse> normal_;
-  ImpulseMemory<PlanarImpulse> planar_;
-  ImpulseMemory<SpatialImpulse> spatial_;
+  std::tuple<Memory<Frictionless>, Memory<Frictional<Planar>>, Memory<Frictional<Spatial>>> memories_;
 };
-
-// The rotation that takes the unit vector `from` to `to` the shortest way, applied to p perpendicular to `from`.
-NSCD_INLINE Vec4 turn_along(const Vec4 &p, const Vec4 &from, const Vec4 &to)
-{
-  const double cosine = dot(from, to);
-  if (cosine <= -1) return p;  // opposite: every half turn is as short
-  const Vec4 turned = p - (from + to) * (dot(p, to) / (1 + cosine));
-  return turned - to * dot(turned, to);
-}
 
 }    // namespace nscd

@@ -36,6 +36,8 @@
 // Iterations are faces solved; the sweeps before the first one are not counted.
 #include "base/error.hpp"
 #include "solver/global/face_minimum.hpp"
+#include "solver/any_mechanics.hpp"
+#include "solver/global/active_set.hpp"
 #include "solver/global/on_grains.hpp"
 #include "solver/momentum.hpp"
 
@@ -237,13 +239,14 @@ class ActiveSet {
   Vector now_, start_;  // of sweeps
 };
 
-SolverReport active_set(GlobalProblem &problem, const SolverOptions &options)
+}    // namespace
+
+SolverReport FactorisedFaces::solve(GlobalProblem &problem, const Frame<> &frame, const SolverOptions &options)
 {
-  if (problem.dim() > 1) fail("solver active_set is for contacts without friction: choose another");
   SolverReport report;
   const std::size_t n = problem.contacts();
   if (n == 0) return report;
-  find_diagonals(problem);
+  find_diagonals<Frame<>>(problem);
   // (42) has impulses in it: its tol may lie below any fraction of |q|, so it gets round-off.
   const double tol = options.stop == Stop::natural ? options.tol : 0;
   ActiveSet solver(problem, tol, options.maxiter);
@@ -252,11 +255,13 @@ SolverReport active_set(GlobalProblem &problem, const SolverOptions &options)
   std::vector<double> u(n);
   problem.w.multiply(problem.p.data(), u.data());
   for (std::size_t k = 0; k < n; ++k) u[k] += problem.q[k];
-  report.criterion = measure(problem, u.data());
+  report.criterion = measure(problem, frame, u.data(), nullptr);
   report.converged = solved(report.criterion, options);
   if (options.history) options.history->push_back(report);
   return report;
 }
+
+namespace {
 
 const RegisterSolver registered({.order = 70,
                                  .name = "active_set",
@@ -264,8 +269,8 @@ const RegisterSolver registered({.order = 70,
                                  .kind = "global",
                                  .friction = false,
                                  .ranks = false,
-                                 .solve = on_grains<active_set>,
-                                 .solve_global = active_set});
+                                 .solve = on_any_grains<Assembled<FactorisedFaces>>,
+                                 .solve_global = on_any_matrix<FactorisedFaces>});
 
 }    // namespace
 

@@ -1,142 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// AUTO: sweeps with momentum, and what comes after them where they would take longer than something else.
-//
-// APGS; where it seems to need more sweeps than factorisations cost (columns, mass ratios, last digits of small beds)
-// the active set takes over from its iterate, with friction the interior point. Should that not end either, APGS goes
-// on, and where it foresees no end, plain NLGS, which alone solves what is far from symmetric. The choice counts sweeps
-// and contacts, never seconds: the same input gives the same bits.
-//
-// The cost of the active set in sweeps is that of a packing in space, n / 3 for n contacts (measured: 520 sweeps at
-// 1,500 contacts, 14,000 at 32,000). With hardly more contacts than bodies they make columns and trees, which have no
-// fill: then it is that of an assembly. The 20 or so factorisations of the interior point cost 14 n sweeps (18,000 at
-// 1,300 contacts).
-#include "solver/iterate_kept.hpp"
-#include "solver/solver.hpp"
-
-#include <algorithm>
-#include <vector>
+// Registers AUTO, which is in auto.hpp.
+#include "solver/global/auto.hpp"
 
 namespace nscd {
 
 namespace {
-
-std::size_t touching_bodies(const Problem &problem)
-{
-  std::vector<char> &touches = problem.workspace.marks;
-  touches.assign(problem.bodies.size(), 0);
-  for (const Contact &c : problem.contacts)
-    for (const int b : {c.i, c.j}) touches[b] = problem.bodies[b][3] > 0;
-  return std::size_t(std::count(touches.begin(), touches.end(), 1));
-}
-
-// Whether the graph of the contacts is one without loops, or nearly.
-bool is_thin(const Problem &problem)
-{
-  return double(problem.contacts.size()) < 1.2 * double(touching_bodies(problem));
-}
-bool is_thin(const GlobalProblem &problem) { return double(problem.w.column.size()) < 4 * double(problem.contacts()); }
-
-std::size_t count(const Problem &problem) { return problem.contacts.size(); }
-std::size_t count(const GlobalProblem &problem) { return problem.contacts(); }
-
-template <class AnyProblem>
-double active_set_in_sweeps(const AnyProblem &problem)
-{
-  constexpr double assembly = 60;
-  return is_thin(problem) ? assembly : std::max(assembly, double(count(problem)) / 3);
-}
-
-template <class AnyProblem>
-double interior_point_in_sweeps(const AnyProblem &problem)
-{
-  return std::max(300.0, 14 * double(count(problem)));
-}
-
-bool has_friction(const Problem &problem) { return problem.sliding.model != Model::frictionless; }
-bool has_friction(const GlobalProblem &problem) { return problem.dim() > 1; }
-
-// There only sweeps go on, which know of other ranks.
-bool on_several_ranks(const Problem &problem) { return problem.halo; }
-bool on_several_ranks(const GlobalProblem &) { return false; }
-
-SolverReport run(std::string_view solver, Problem &problem, const SolverOptions &options)
-{
-  return find_solver(solver).solve(problem, options);
-}
-
-SolverReport run(std::string_view solver, GlobalProblem &problem, const SolverOptions &options)
-{
-  return find_solver(solver).solve_global(problem, options);
-}
-
-// One solver after another on the same iterate; iterations add up.
-template <class AnyProblem>
-class Relay {
- public:
-  Relay(AnyProblem &problem, const SolverOptions &options) : problem_(problem), left_(options)
-  {
-    report_.converged = false;
-  }
-
-  void hand_to(std::string_view solver, double alternative = 0)
-  {
-    if (is_over()) return;
-    left_.alternative = alternative;
-    left_.parameter = find_solver(solver).default_parameter;
-    const std::size_t first = left_.history ? left_.history->size() : 0;
-    const SolverReport done = run(solver, problem_, left_);
-    for (std::size_t k = first; left_.history && k < left_.history->size(); ++k)
-      (*left_.history)[k].iterations += report_.iterations;
-    report_.iterations += done.iterations;
-    report_.criterion = done.criterion;
-    report_.converged = done.converged;
-    report_.accepted = done.accepted;
-    report_.at_round_off = done.at_round_off;
-    report_.ran_away |= done.ran_away;
-    left_.maxiter -= done.iterations;
-    left_.budget.spent += done.iterations;
-  }
-
-  // A factorisation that does not end is of no use to those that go on: where nothing can give way its impulses are as
-  // large as round-off lets them be.
-  void try_factorising(std::string_view solver)
-  {
-    if (is_over()) return;
-    IterateKept before;
-    before.keep(problem_);
-    const Criterion seen = report_.criterion;
-    hand_to(solver);
-    const bool better = judged(report_.criterion, left_) < judged(seen, left_);
-    if (report_.converged || (report_.at_round_off && better)) return;
-    before.restore(problem_);
-    report_.criterion = seen;
-    report_.at_round_off = false;
-  }
-
-  double sweeps_left() const { return left_.maxiter; }
-  const SolverReport &report() const { return report_; }
-
- private:
-  bool is_over() const { return report_.converged || report_.at_round_off || left_.maxiter < 1; }
-
-  AnyProblem &problem_;
-  SolverOptions left_;
-  SolverReport report_;
-};
-
-template <class AnyProblem>
-SolverReport choose(AnyProblem &problem, const SolverOptions &options)
-{
-  Relay relay(problem, options);
-  const bool friction = has_friction(problem);
-  if (!on_several_ranks(problem)) {
-    relay.hand_to("apgs", friction ? interior_point_in_sweeps(problem) : active_set_in_sweeps(problem));
-    relay.try_factorising(friction ? "interior_point" : "active_set");
-  }
-  relay.hand_to("apgs", relay.sweeps_left() / 2);
-  relay.hand_to("pdas");
-  return relay.report();
-}
 
 const RegisterSolver registered({.order = 100,
                                  .name = "auto",
@@ -144,8 +12,8 @@ const RegisterSolver registered({.order = 100,
                                  .kind = "global",
                                  .friction = true,
                                  .ranks = true,
-                                 .solve = choose<Problem>,
-                                 .solve_global = choose<GlobalProblem>});
+                                 .solve = on_any_grains<Auto>,
+                                 .solve_global = on_any_matrix<Auto>});
 
 }    // namespace
 

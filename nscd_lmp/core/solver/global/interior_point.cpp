@@ -34,6 +34,8 @@
 // Iterations are factorisations.
 #include "solver/global/central_path.hpp"
 #include "solver/global/newton_end.hpp"
+#include "solver/any_mechanics.hpp"
+#include "solver/global/interior_point.hpp"
 #include "solver/global/on_grains.hpp"
 
 #include <algorithm>
@@ -186,10 +188,11 @@ class Search {
   NewtonEnd newton_;
 };
 
-SolverReport interior_point(GlobalProblem &problem, const SolverOptions &options)
+}    // namespace
+
+SolverReport InteriorPoint::solve(GlobalProblem &problem, const SolverOptions &options)
 {
   if (problem.contacts() == 0) return {};
-  find_diagonals(problem);
   Best best(problem, options);
   best.look(std::vector<double>(problem.p.size(), 0.0));
   const UnitCones cones(problem);
@@ -206,14 +209,16 @@ SolverReport interior_point(GlobalProblem &problem, const SolverOptions &options
   return best.finish();
 }
 
+namespace {
+
 const RegisterSolver registered({.order = 80,
                                  .name = "interior_point",
                                  .title = "interior point",
                                  .kind = "global",
                                  .friction = true,
                                  .ranks = false,
-                                 .solve = on_grains<interior_point>,
-                                 .solve_global = interior_point});
+                                 .solve = on_any_grains<Assembled<InteriorPoint>>,
+                                 .solve_global = on_any_matrix<InteriorPoint>});
 
 }    // namespace
 

@@ -35,22 +35,30 @@ struct Pdas {
 
   template <class Tangent>
   NSCD_INLINE static FrictionalLocal<Tangent> visit(const FrictionalLocal<Tangent> &now, const Split<Tangent> &v,
-                                                    const OwnBlock &own, double gamma)
+                                                    const OwnBlock<Tangent> &own, double gamma)
   {
     const double tau = now.p.n - gamma * v.n * own.w_inverse;
     if (!(tau >= 0)) return {};
-    const double normal = now.p.n - v.n * own.w_inverse;
-    const double radius = coulomb_radius(own.mu, normal);
-    const Tangent tau_t = now.p.t - v.t * (gamma * own.wt_inverse);
-    const double length2 = inner(tau_t, tau_t);
-    if (length2 <= radius * radius) return {.p = {normal, now.p.t - v.t * own.wt_inverse}};
+    FrictionalLocal<Tangent> next;
+    next.p.n = now.p.n - v.n * own.w_inverse;
+    for_each_disc([&](std::size_t d, const auto &p, const auto &u, auto &to) NSCD_INLINED {
+      const Disc &disc = own.discs[d];
+      to = in_disc(p, u, disc, coulomb_radius(disc.mu, next.p.n), gamma);
+    }, now.p.t, v.t, next.p.t);
+    return next;
+  }
+
+ private:
+  template <class Vector>
+  NSCD_INLINE static Vector in_disc(const Vector &p, const Vector &u, const Disc &disc, double radius, double gamma)
+  {
+    const Vector tau = p - u * (gamma * disc.w_inverse);
+    const double length2 = inner(tau, tau);
+    if (length2 <= radius * radius) return p - u * disc.w_inverse;
     const double m = radius / std::sqrt(length2);
-    Tangent tangential = tau_t * m;
-    if (gamma != 1) {
-      const Tangent across = now.p.t - tau_t * (inner(now.p.t, tau_t) / length2);
-      tangential = tangential + across * (1 - 1 / (1 - m + m * gamma));
-    }
-    return {.p = {normal, tangential}};
+    if (gamma == 1) return tau * m;
+    const Vector across = p - tau * (inner(p, tau) / length2);
+    return tau * m + across * (1 - 1 / (1 - m + m * gamma));
   }
 };
 

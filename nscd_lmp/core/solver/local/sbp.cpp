@@ -1,48 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// SBP: standard bipotential, one Uzawa step a visit (Barboteu & Dumont 2017, section 4.2; Fortin et al. 2005).
-//
-//   tau = p - rho (v~ + mu |u_t| n),   p <- proj(tau, K_mu),   K_mu = { |p_t| <= mu p_n }
-//
-// The term mu |u_t| (de Saxce & Feng) makes the fixed point Coulomb's law with v_n = 0; without it, it is the convex
-// relaxation, in which sliding grains lift with v_n = mu |u_t|. For stick K is a half-space and the term is left out.
-// Makes exact: p in K_mu. The contact's own error shrinks by |1 - rho W~_nn| a visit, so rho decides.
-// Default rho = 4/9 of 1/W~_nn: the best fixed step on a sphere's whole contact block W~_nn diag(1, 7/2, 7/2),
-// 2 / (1 + 7/2); the normal direction alone would take 1 and be PDAS.
-// Fails: diverges for rho >= 2/W~_nn (7/2 times earlier under friction), crawls for small rho.
-// Without friction K_0 and SAL's half-cylinder are the same half-line: SBP and SAL give the same iterates.
-#include "solver/nlgs.hpp"
-
-#include <algorithm>
+// Registers SBP in NLGS; the law is in sbp.hpp, for whoever solves other mechanics than a scene's by it.
+#include "solver/local/sbp.hpp"
 
 namespace nscd {
-
-struct Sbp {
-  static constexpr bool carries_velocity = false;
-  static Local visit(Local now, double v, double w_inverse, double rho)
-  {
-    const double tau = now.impulse - rho * w_inverse * v;
-    return {std::max(0.0, tau), 0.0};
-  }
-
-  template <class Tangent>
-  NSCD_INLINE static FrictionalLocal<Tangent> visit(const FrictionalLocal<Tangent> &now, const Split<Tangent> &v,
-                                                    const OwnBlock &own, double rho)
-  {
-    const double step = rho * own.w_inverse, mu = own.mu;
-    const Tangent tau_t = now.p.t - v.t * step;
-    if (std::isinf(mu)) {
-      const double tau = now.p.n - step * v.n;
-      if (!(tau > 0)) return {};
-      return {.p = {tau, tau_t}};
-    }
-    const double tau = now.p.n - step * (v.n + mu * length(v.t));
-    const double tangential = length(tau_t);
-    if (tau > 0 && tangential <= mu * tau) return {.p = {tau, tau_t}};
-    const double normal = (tau + mu * tangential) / (1 + mu * mu);
-    if (!(normal > 0)) return {};
-    return {.p = {normal, tau_t * (mu * normal / tangential)}};
-  }
-};
 
 static const RegisterSolver sbp(local_law<Sbp>(
     {.order = 10, .name = "sbp", .title = "SBP", .parameter = "rho", .default_parameter = 4.0 / 9.0}));

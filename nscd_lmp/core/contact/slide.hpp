@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The part of a contact that keeps its bodies from sliding against each other: Coulomb's friction.
+//
+//   u_t = 0 where |p_t| < mu p_n,   p_t = -mu p_n u_t / |u_t| otherwise
+//
+// A part is what lies beside a contact, and how that acts on the contact's bodies: its velocity, what its impulse does,
+// and its own W over W_nn where no other part moves with it. mechanics.hpp puts parts together.
+#pragma once
+
+#include "contact/discs.hpp"
+
+#include <type_traits>
+
+namespace nscd {
+
+// What any part has whose impulse is bounded by mu p_n.
+template <class Space>
+struct Bounded;
+
+template <>
+struct Bounded<Planar> {
+  double impulse;  // along t, on body i, N s
+  double bias;     // m/s, e_t times the tangential velocity before
+  double mu;
+};
+
+template <>
+struct Bounded<Spatial> {
+  alignas(vec4_alignment) Vec4 impulse;  // on body i, N s
+  double bias[3];
+  double mu;
+};
+
+NSCD_INLINE double bias(const Bounded<Planar> &part) { return part.bias; }
+NSCD_INLINE Vec4 bias(const Bounded<Spatial> &part) { return Vec4{part.bias[0], part.bias[1], part.bias[2], 0}; }
+inline void set_bias(Bounded<Planar> &part, double value) { part.bias = value; }
+inline void set_bias(Bounded<Spatial> &part, const Vec4 &value)
+{
+  for (int d = 0; d < 3; ++d) part.bias[d] = value[d];
+}
+
+template <class Space_>
+struct Slide : Bounded<Space_> {
+  using Space = Space_;
+  using Vector = typename Space::Tangent;
+  static constexpr int axes = Space::unknowns - 1;
+  static constexpr bool stands_alone = true;   // whether W couples it to no other part of its contact
+  static constexpr bool mirrors = false;   // whether, in the plane, its number changes sign seen from the other body
+
+  // m/s, without bias; `normal` is the contact's normal velocity.
+  template <class Pair>
+  NSCD_INLINE Vector velocity(const Pair &pair, const Vec4 &n, double normal) const
+  {
+    return pair.slip(n, normal);
+  }
+  template <class Pair>
+  NSCD_INLINE auto wrench(const Pair &pair, const Vec4 &n, const Vector &impulse) const
+  {
+    return pair.at_contact(n, impulse);
+  }
+  template <class Dynamics>
+  NSCD_INLINE static double ratio(const Dynamics &dynamics)
+  {
+    return dynamics.slide_ratio();
+  }
+};
+static_assert(sizeof(Slide<Spatial>) == 64 && sizeof(Slide<Planar>) == 24);
+
+}    // namespace nscd
