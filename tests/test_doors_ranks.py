@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 from scenes import DOORS
-from test_ranks import TESTS, execute
+from test_ranks import BUILDERS, execute
 
 Told = dict[str, Any]
 
@@ -19,7 +19,7 @@ Told = dict[str, Any]
 def told(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Told]:
     """Return the door and, for each case, the warnings and the error that each rank was told."""
     path: Path = tmp_path_factory.mktemp("ranks") / "told"
-    execute(2, str(TESTS / "doors_ranks_scene.py"), request.param, str(path))
+    execute(2, str(BUILDERS / "doors_ranks_scene.py"), request.param, str(path))
     return request.param, json.loads(path.read_text())
 
 

@@ -196,7 +196,7 @@ def on_ranks(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the folder with what random_ranks.py left on 1 and on 2 ranks."""
     folder = tmp_path_factory.mktemp("ranks")
     for count in (1, 2):
-        execute(count, str(Path(__file__).parent / "random_ranks.py"), str(folder))
+        execute(count, random_ranks.__file__, str(folder))
     return folder
 
 

@@ -21,6 +21,8 @@ import ranks_beds
 import nscd_lmp
 
 TESTS = Path(__file__).parent
+BUILDERS = TESTS / "builders"
+PYTHONPATH = os.pathsep.join(map(str, (TESTS, TESTS / "references", BUILDERS)))
 DOORS = ("script", "python")
 SECONDS = 60  # a hang is a failure
 # Shared memory alone, with a speed of its own: UCX refuses networks without one, as virtual machines have them.
@@ -39,7 +41,7 @@ def execute(ranks: int, *words: str) -> None:
     """Run a Python program on several ranks; fail with what it printed, or if it hangs."""
     done = processes.run(
         [Path(sys.prefix) / "bin" / "mpiexec", "-n", str(ranks), sys.executable, *words], SECONDS,
-        env=os.environ | MPI_ON_ONE_HOST | {"PYTHONPATH": str(TESTS)}, stdin=subprocess.DEVNULL,
+        env=os.environ | MPI_ON_ONE_HOST | {"PYTHONPATH": PYTHONPATH}, stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
     )  # fmt: skip
     if done.returncode != 0:
@@ -55,7 +57,7 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
     def ask(ranks: int, case: str) -> Any:
         left = folder / f"{case}.{ranks}.npz"
         if not left.exists():
-            execute(ranks, str(TESTS / "ranks_scene.py"), case, str(folder), str(folder))
+            execute(ranks, str(BUILDERS / "ranks_scene.py"), case, str(folder), str(folder))
         return np.load(left)
 
     return ask
@@ -148,13 +150,13 @@ def test_ranks_that_may_use_different_cores_agree_on_how_to_wait(answers: Answer
     """Ranks that wait in different calls would wait for ever: one here sees fewer cores than there are ranks."""
     beds = tmp_path
     ranks_beds.make(beds)
-    program = [sys.executable, str(TESTS / "ranks_scene.py"), f"moreau_{door}", str(beds), str(beds)]
+    program = [sys.executable, str(BUILDERS / "ranks_scene.py"), f"moreau_{door}", str(beds), str(beds)]
     pin = "import os, sys; os.sched_setaffinity(0, [min(os.sched_getaffinity(0))]); os.execv(sys.argv[1], sys.argv[1:])"
     pinned = [sys.executable, "-c", pin, *program]
     environment = {name: value for name, value in MPI_ON_ONE_HOST.items() if name != "MPIR_CVAR_NOLOCAL"}
     done = subprocess.run(
         [Path(sys.prefix) / "bin" / "mpiexec", "-n", "1", *pinned, ":", "-n", "2", *program],
-        env=os.environ | environment | {"PYTHONPATH": str(TESTS)}, stdin=subprocess.DEVNULL,
+        env=os.environ | environment | {"PYTHONPATH": PYTHONPATH}, stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=SECONDS, check=False,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout[-3000:]
