@@ -16,8 +16,8 @@ CORE = Path(__file__).parent.parent / "nscd_lmp" / "core"
 TABLE = (CORE / "README.md").read_text()
 FILES = {path.relative_to(CORE).as_posix(): path.read_text() for path in sorted(CORE.rglob("*")) if path.is_file()}
 ROOMS = {
-    "solver", "solver/local", "solver/global",
-    "base", "contact", "obstacle", "parallel", "problem", "settings", "scene", "warm_start", "scheme", "step",
+    "solver", "solver/local", "solver/global", "scene", "scene/drift", "scene/list",
+    "base", "contact", "obstacle", "parallel", "problem", "settings", "warm_start", "scheme", "step",
 }  # fmt: skip
 SYSTEM = {"pthread.h", "sched.h", "signal.h"}  # threads on their processors
 

@@ -4,8 +4,8 @@
 #include "arrays.hpp"
 
 #include "base/error.hpp"
-#include "scene/bonded.hpp"
 #include "scene/doubts.hpp"
+#include "scene/list/bonded.hpp"
 
 #include <algorithm>
 #include <cmath>

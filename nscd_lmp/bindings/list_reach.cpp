@@ -2,7 +2,7 @@
 #include "list_reach.hpp"
 
 #include "base/error.hpp"
-#include "scene/list_audit.hpp"
+#include "scene/list/list_audit.hpp"
 
 #include <algorithm>
 #include <cmath>

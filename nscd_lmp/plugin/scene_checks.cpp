@@ -2,7 +2,7 @@
 #include "scene_checks.hpp"
 
 #include "base/error.hpp"
-#include "scene/bonded.hpp"
+#include "scene/list/bonded.hpp"
 
 #include <atom.h>
 #include <comm.h>

@@ -2,7 +2,7 @@
 // What a contact's velocity has besides its bodies': radii that grow, images and grains that move with the box.
 #include "check.hpp"
 #include "scene.hpp"
-#include "scene/box_motion.hpp"
+#include "scene/drift/box_motion.hpp"
 
 #include <cmath>
 

@@ -2,12 +2,12 @@
 // Pairs that the neighbor list lacks: judged by their own approach, and found where a solve drives them together.
 #include "check.hpp"
 #include "scene.hpp"
-#include "scene/cell_grid.hpp"
+#include "scene/list/cell_grid.hpp"
 #include "thread_ranks.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <cmath>
+#include <cstdio>
 
 using nscd::Step;
 using nscd::Vec4;

@@ -5,7 +5,7 @@
 #include "base/error.hpp"
 #include "base/hot.hpp"
 #include "contact/moment.hpp"
-#include "scene/drift_of.hpp"
+#include "scene/drift/drift_of.hpp"
 #include "scene/gap.hpp"
 #include "scene/state.hpp"
 

@@ -113,6 +113,7 @@ static NSCD_HOT Largest load_bodies(State &s, const Search &search)
 Largest gather_owned(State &s, double prediction, double look_ahead)
 {
   s.atoms.spheres.resize(s.in.grains.owned + s.in.grains.ghosts);
+  s.motion.stage = Motion::Stage::free;
   s.motion.bodies.resize(s.moving() + obstacle_copies * s.exec.slabs.count());
   s.motion.kicks.resize(s.motion.bodies.size());
   s.motion.displacement.resize(s.moving());

@@ -3,7 +3,7 @@
 
 #include "base/hot.hpp"
 #include "scene/contact_geometry.hpp"
-#include "scene/drift_of.hpp"
+#include "scene/drift/drift_of.hpp"
 
 #include <algorithm>
 

@@ -8,7 +8,7 @@
 #include "contact/sphere.hpp"
 #include "parallel/halo.hpp"
 #include "scene/contact_table.hpp"
-#include "scene/drift.hpp"
+#include "scene/drift/drift.hpp"
 #include "scene/obstacles.hpp"
 #include "scene/slabs.hpp"
 #include "scene/views.hpp"
@@ -78,11 +78,13 @@ struct Atoms {
 
 // Bodies and how they move.
 struct Motion {
-  // Velocities (moving() + obstacle_copies a slab + contacts with walls that move): free ones as gathered, then with
-  // what impulses so far have given; while impacts are resolved, those of the middle of the step; v_{k+1} once the
-  // rounds are over.
-  AlignedVector<Body> bodies{};
-  AlignedVector<Vec4> spins{};           // (bodies) the same, surface velocity r omega, m/s; walls 0. With friction
+  // What `bodies` and `spins` are now: the velocities of free motion, as gathered or behind the impacts of the step;
+  // those of the middle of the step, while impacts are resolved; with what the impulses of contacts have given so far;
+  // v_{k+1}, once the rounds are over.
+  enum class Stage { free, in_impacts, with_impulses, solved };
+  Stage stage = Stage::free;
+  AlignedVector<Body> bodies{};          // (moving() + obstacle_copies a slab + contacts with walls that move), m/s
+  AlignedVector<Vec4> spins{};           // (bodies) surface velocity r omega, m/s; walls 0. With friction
   AlignedVector<Vec4> displacement{};    // (moving()) from where contacts were sought to q_{k+1}
   std::vector<double> kicks{};           // (bodies) |dt f / m| of the step, m/s; obstacles 0
   std::vector<Way> ways{};               // (moving()) of obstacles; or empty: none has a velocity

@@ -21,7 +21,7 @@
 // Fails: an inelastic impact starts from where the grain is, up to dt v before the surface.
 #include "base/hot.hpp"
 #include "scene/contact_plane.hpp"
-#include "scene/drift_of.hpp"
+#include "scene/drift/drift_of.hpp"
 #include "scheme/displacements.hpp"
 #include "scheme/scheme.hpp"
 

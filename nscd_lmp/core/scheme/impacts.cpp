@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "scheme/impacts.hpp"
 
-#include "scene/drift_of.hpp"
+#include "scene/drift/drift_of.hpp"
 #include "scene/slides.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 namespace nscd {
@@ -92,6 +93,8 @@ bool resolve_impacts(State &s, Bends &bends, const SolvePart &solve)
 {
   s.table.close_impacts();
   s.table.per_approach.close();   // of the last step's contacts, which are others
+  assert(s.motion.stage == Motion::Stage::free);
+  s.motion.stage = Motion::Stage::in_impacts;
   smooth_half(s, -1);
   bends.begin(s);
   Closing closing = select_closing(s, bends);
@@ -115,6 +118,7 @@ bool resolve_impacts(State &s, Bends &bends, const SolvePart &solve)
   s.table.impact_moment.close();
   s.table.impact_kick.close();
   smooth_half(s, +1);
+  s.motion.stage = Motion::Stage::free;
   return closing.given_back > worth_saying * first_energy;
 }
 

@@ -12,7 +12,7 @@
 // theta < 1/2 gains energy and theta > 1/2 loses it, (theta - 1/2) m g^2 dt^2 a step. A grain that a force f presses
 // on something round is pushed on, since the normal is that at q_m and the force that at q_k: its angular momentum
 // grows as exp((1 - theta) dt f t / (m r)), r being the radius of its path.
-#include "scene/drift_of.hpp"
+#include "scene/drift/drift_of.hpp"
 #include "scheme/scheme.hpp"
 
 namespace nscd {

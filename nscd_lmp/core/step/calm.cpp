@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "step/calm.hpp"
 
-#include "scene/drift_of.hpp"
+#include "scene/drift/drift_of.hpp"
 
 #include <algorithm>
 #include <cmath>

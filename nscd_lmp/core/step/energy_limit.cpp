@@ -3,7 +3,7 @@
 
 #include "base/storage.hpp"
 #include "scene/contact_plane.hpp"
-#include "scene/drift_of.hpp"
+#include "scene/drift/drift_of.hpp"
 #include "scene/slides.hpp"
 #include "solver/across_ranks.hpp"
 

@@ -9,6 +9,7 @@
 #include "step/approach_bound.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -32,6 +33,7 @@ Rounds::Result Rounds::run(const PairList &pairs)
     const bool solved = solve(next);
     next = look_on(next, solved, pairs);
   }
+  state_.motion.stage = Motion::Stage::solved;
   const double contacts = sum_everywhere(state_, double(state_.table.size()));
   return {std::int64_t(contacts), calmed_.jammed, impacts_left_, calmed_.energy};
 }
@@ -39,6 +41,7 @@ Rounds::Result Rounds::run(const PairList &pairs)
 // Everything that a step sums up over its solves.
 void Rounds::begin()
 {
+  assert(state_.motion.stage == Motion::Stage::free);
   solves_.begin_step();
   impacts_left_ = false;
   state_.table.close_impacts();
@@ -106,8 +109,10 @@ NSCD_HOT void Rounds::start_contacts(std::size_t first, bool goes_on)
   const double added = keep_free_velocities(state_, first, state_.table.size());
   free_norm_ = std::hypot(goes_on ? free_norm_ : 0, added);
   bound_approach(state_, first);
-  if (!state_.in.settings.warmstart) return;
   Motion &motion = state_.motion;
+  assert(goes_on == (motion.stage == Motion::Stage::with_impulses));
+  motion.stage = Motion::Stage::with_impulses;
+  if (!state_.in.settings.warmstart) return;
   change_across(state_.exec.halo, motion.bodies, motion.spins.data(), [&] { memory_.recall(state_, first); });
 }
 
@@ -143,6 +148,7 @@ void Rounds::resolve_impacts_first(Reason reason)
     // Those of walls that move have come in since; nothing changes them.
     std::copy(free_bodies_.begin(), free_bodies_.end(), state_.motion.bodies.begin());
     std::copy(free_spins_.begin(), free_spins_.end(), state_.motion.spins.begin());
+    state_.motion.stage = Motion::Stage::free;
     place_materials(state_, 0);
   }
   const Settings &settings = state_.in.settings;

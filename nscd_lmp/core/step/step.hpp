@@ -3,12 +3,12 @@
 #pragma once
 
 #include "parallel/halo.hpp"
-#include "scene/belts.hpp"
 #include "scene/detection.hpp"
-#include "scene/drift.hpp"
+#include "scene/drift/belts.hpp"
+#include "scene/drift/drift.hpp"
 #include "scene/left_places.hpp"
-#include "scene/list_guard.hpp"
-#include "scene/missed_pairs.hpp"
+#include "scene/list/list_guard.hpp"
+#include "scene/list/missed_pairs.hpp"
 #include "scene/state.hpp"
 #include "scheme/scheme.hpp"
 #include "step/remarks.hpp"

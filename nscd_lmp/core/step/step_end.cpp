@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The end of a step: what it has done, and back into the arrays.
 #include "base/hot.hpp"
-#include "scene/drift_of.hpp"
+#include "scene/drift/drift_of.hpp"
 #include "scene/gap.hpp"
 #include "scene/slides.hpp"
 #include "scene/spins.hpp"
 #include "step/step.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace nscd {
@@ -81,6 +82,7 @@ NSCD_HOT Step::Tally Step::tally_contacts(double calmed)
 
 void Step::write_back()
 {
+  assert(state_.motion.stage == Motion::Stage::solved);
   const Grains &g = state_.in.grains;
   for (int i = 0; i < g.owned; ++i) {
     const Body &b = state_.motion.bodies[i];

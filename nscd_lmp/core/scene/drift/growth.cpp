@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "scene/growth.hpp"
+#include "scene/drift/growth.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "scene/motion.hpp"
+#include "scene/list/motion.hpp"
 
 namespace nscd {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "scene/box_motion.hpp"
+#include "scene/drift/box_motion.hpp"
 
 #include "base/error.hpp"
 #include "scene/state.hpp"

@@ -11,10 +11,10 @@
 // Two spheres that move straight meet only if gap + n.(d_i - d_j) <= 0, n their normal: their distance is convex.
 #pragma once
 
-#include "scene/cell_grid.hpp"
-#include "scene/list_guard.hpp"
-#include "scene/motion.hpp"
-#include "scene/spread.hpp"
+#include "scene/list/cell_grid.hpp"
+#include "scene/list/list_guard.hpp"
+#include "scene/list/motion.hpp"
+#include "scene/list/spread.hpp"
 
 #include <optional>
 #include <vector>

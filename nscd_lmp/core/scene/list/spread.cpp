@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "scene/spread.hpp"
+#include "scene/list/spread.hpp"
 
 #include <algorithm>
 

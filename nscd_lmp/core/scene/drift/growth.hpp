@@ -2,7 +2,7 @@
 // How fast radii grow, from what they were in the steps before.
 #pragma once
 
-#include "scene/box_motion.hpp"
+#include "scene/drift/box_motion.hpp"
 #include "scene/views.hpp"
 
 #include <cstdint>

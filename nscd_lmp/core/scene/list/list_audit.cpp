@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "scene/list_audit.hpp"
+#include "scene/list/list_audit.hpp"
 
-#include "scene/cell_grid.hpp"
+#include "scene/list/cell_grid.hpp"
 
 #include <algorithm>
 #include <array>

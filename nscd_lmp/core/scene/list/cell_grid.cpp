@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "scene/cell_grid.hpp"
+#include "scene/list/cell_grid.hpp"
 
 #include <algorithm>
 #include <bit>

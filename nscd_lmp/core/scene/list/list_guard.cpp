@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "scene/list_guard.hpp"
+#include "scene/list/list_guard.hpp"
 
 #include "base/error.hpp"
 

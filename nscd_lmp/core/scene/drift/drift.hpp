@@ -4,8 +4,8 @@
 #pragma once
 
 #include "base/storage.hpp"
-#include "scene/box_motion.hpp"
-#include "scene/growth.hpp"
+#include "scene/drift/box_motion.hpp"
+#include "scene/drift/growth.hpp"
 
 #include <vector>
 

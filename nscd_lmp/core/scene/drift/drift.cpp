@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "scene/drift.hpp"
+#include "scene/drift/drift.hpp"
 
 #include "scene/copies.hpp"
-#include "scene/drift_of.hpp"
+#include "scene/drift/drift_of.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "scene/bonded.hpp"
+#include "scene/list/bonded.hpp"
 
 #include "base/error.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "scene/belts.hpp"
+#include "scene/drift/belts.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "scene/missed_pairs.hpp"
+#include "scene/list/missed_pairs.hpp"
 
 #include "base/error.hpp"
 #include "base/hot.hpp"
