@@ -88,13 +88,13 @@ class Statuses:
         return np.asarray(scale[:, None] * A * scale)
 
 
-def hard_problems(grains: int, friction: float) -> dict[int, Problem]:
-    """Return the problems of a fall that FEW sweeps leave unsolved, and the impulses that they started from."""
+def hard_problems(grains: int, friction: float, few: int) -> dict[int, Problem]:
+    """Return the problems of a fall that `few` sweeps leave unsolved, and the impulses that they started from."""
     found: dict[int, Problem] = {}
 
     def solver(system: nscd_lmp.ContactSystem) -> Any:
         problem, start = system.problem(), np.array(system.start)
-        answer = nscd_lmp.solve(problem, "apgs", tol=TOL, maxiter=FEW, warmstart=start, unconverged="ignore")
+        answer = nscd_lmp.solve(problem, "apgs", tol=TOL, maxiter=few, warmstart=start, unconverged="ignore")
         if not answer.converged:
             found[int(lmp.extract_global("ntimestep"))] = problem, start
         return answer.impulse
@@ -107,11 +107,11 @@ def hard_problems(grains: int, friction: float) -> dict[int, Problem]:
     return found
 
 
-def look_at(problem: nscd_lmp.ContactProblem, start: Array) -> dict[str, Any]:
+def look_at(problem: nscd_lmp.ContactProblem, start: Array, many: int = MANY) -> dict[str, Any]:
     """Return what many sweeps leave, and where plain ones lead from there."""
     options: dict[str, Any] = {"unconverged": "ignore"}
-    hard = nscd_lmp.solve(problem, "apgs", tol=TOL, maxiter=16 * MANY, warmstart=start, **options)
-    best = nscd_lmp.solve(problem, "apgs", tol=1e-9, maxiter=MANY, warmstart=start, **options)
+    hard = nscd_lmp.solve(problem, "apgs", tol=TOL, maxiter=16 * many, warmstart=start, **options)
+    best = nscd_lmp.solve(problem, "apgs", tol=1e-9, maxiter=many, warmstart=start, **options)
     statuses = Statuses(problem, best.impulse)
     A = statuses.matrix()
     growth = np.abs(np.linalg.eigvals(np.eye(len(A)) - scipy.linalg.solve_triangular(np.tril(A), A, lower=True)))
@@ -139,15 +139,19 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--grains", type=int, default=500, choices=sorted(WIDTHS))
     parser.add_argument("--frictions", type=float, nargs="+", default=FRICTIONS)
     parser.add_argument("--problems", type=int, default=9, help="so many a friction, spread over the fall")
-    parser.add_argument("--output", type=Path, default=Path(), help="folder of the CSV")
+    parser.add_argument("--output", type=Path, default=Path("output/benchmarks"), help="folder [%(default)s]")
+    parser.add_argument("--quick", action="store_true", help="one easy problem, to see that it runs")
     asked = parser.parse_args(arguments)
+    few, many = FEW, MANY
+    if asked.quick:
+        asked.grains, asked.frictions, asked.problems, few, many = 60, FRICTIONS[-1:], 1, 10, 50
     record, rows = Record("repelling_contacts"), []
     for friction in asked.frictions:
-        found = hard_problems(asked.grains, friction)
+        found = hard_problems(asked.grains, friction, few)
         steps = sorted(found)
         places = np.linspace(0, len(steps) - 1, min(asked.problems, len(steps))).round().astype(int)
         for step in (steps[k] for k in places):
-            row = {"friction": friction, "hard": len(steps), "step": step, **look_at(*found[step])}
+            row = {"friction": friction, "hard": len(steps), "step": step, **look_at(*found[step], many)}
             record.add(**row)
             rows.append(row)
             record.write(asked.output / "repelling_contacts.csv")
