@@ -112,6 +112,19 @@ FILES = {
             "cpu_seconds",
         }
     },
+    "hopper_rate": {
+        "hopper_rate.csv": {
+            "slot",
+            "discs",
+            "seed",
+            "dt",
+            "rate",
+            "discharged",
+            "seconds",
+            "given_up",
+            "cpu_seconds",
+        }
+    },
     "friction_scenes": {
         "friction_scenes.csv": {
             "scene",
