@@ -2,12 +2,13 @@
 """How fast discs leave a planar hopper, over its opening and over the height of its filling: Beverloo's law.
 
 The scene is inputs/in.hopper2d: 1500 discs of 0.8 to 1.2 mm, friction 0.5, here with solver auto to 1e-3. The rate is
-the slope of the number of discs below the slot over time, from 0.05 s after the opening until half of them are out. The
-fit is rate = C (slot / d - k)^p over all runs of the default filling, in logarithms: with p = 3/2, then with p free.
-Errors of fits are standard deviations over fits of as many runs, drawn with replacement from those of each slot.
+the slope of the number of discs below the slot over time, from 0.05 s after the opening until half of them are out, and
+`later` is the slope from there until three quarters are. The fit is rate = C (slot / d - k)^p over all runs with as many
+discs, in logarithms: with p = 3/2, then with p free. Errors of fits are standard deviations over fits of as many runs,
+drawn with replacement from those of each slot.
 
     python benchmarks/hopper_rate.py
-    python benchmarks/hopper_rate.py --slots 6e-3 12e-3 --fillings --seeds 1 2 3
+    python benchmarks/hopper_rate.py --slots 6e-3 12e-3 --discs 1000 --fillings --dt 5e-4 --seeds 1
 """
 
 from __future__ import annotations
@@ -32,31 +33,38 @@ SLOTS, FILLING = (6e-3, 8e-3, 10e-3, 12e-3), 1500
 FILLINGS = (1000, 2000)  # at the slot AT
 AT = 8e-3
 RIGID = {"solver": "auto", "tol": 1e-3, "maxiter": 1000, "unconverged": "ignore"}
-SETTLES, LONGEST, LOOK = 0.05, 1.5, 0.01  # s
+SETTLES, LONGEST, LOOK, END = 0.05, 1.5, 0.01, 0.75  # s, s, s, share of the discs
 DRAWS = 200
 
 
+def slope(t: Array, out: Array, first: float, last: float) -> float:
+    """Return the slope from the first to the last time (s), NaN without two looks between them."""
+    inside = (t > first - LOOK / 2) & (t < last + LOOK / 2)
+    return float(np.polyfit(t[inside], out[inside], 1)[0]) if inside.sum() > 1 else float("nan")
+
+
 def discharge(slot: float, discs: int, seed: int, dt: float, seconds: float = LONGEST) -> dict[str, Any]:
-    """Run a hopper until half of its discs are out, and return the row."""
+    """Run a hopper until three quarters of its discs are out, and return the row."""
     began = time.process_time()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         lmp = run_scene("in.hopper2d", slot=slot, n=discs, seed=seed, dt=dt, steps=0, every=1000, **RIGID)
         looks = [0.0]
-        while len(looks) * LOOK <= seconds and looks[-1] < discs / 2:
+        while len(looks) * LOOK <= seconds and looks[-1] < END * discs:
             lmp.command(f"run {round(LOOK / dt)} post no")
             looks.append(float(lmp.extract_variable("discharged")))
     given_up = float(lmp.numpy.extract_fix("nscd", 0, 1, 10))
     lmp.close()
     out = np.array(looks)
     t = LOOK * np.arange(len(out))
-    late = t > SETTLES - LOOK / 2
+    half = float(t[np.argmax(out >= discs / 2)]) if out[-1] >= discs / 2 else float(t[-1])
     return {
         "slot": slot,
         "discs": discs,
         "seed": seed,
         "dt": dt,
-        "rate": float(np.polyfit(t[late], out[late], 1)[0]) if late.sum() > 1 else float("nan"),
+        "rate": slope(t, out, SETTLES, half),
+        "later": slope(t, out, half, float(t[-1])),
         "discharged": int(out[-1]),
         "seconds": float(t[-1]),
         "given_up": given_up,
@@ -87,17 +95,19 @@ def fit_and_error(slots: Array, rates: Array, power: float | None) -> tuple[Arra
     return np.array(fit(slots, rates, power)), np.std(found, axis=0)
 
 
-def report(rows: Sequence[dict[str, Any]]) -> None:
+def report(rows: Sequence[dict[str, Any]], filling: int) -> None:
     """Print mean rates and their standard deviations, and the fits."""
-    groups: dict[tuple[float, int], list[float]] = {}
+    groups: dict[tuple[float, int], list[dict[str, Any]]] = {}
     for row in rows:
-        groups.setdefault((row["slot"] / DIAMETER, row["discs"]), []).append(row["rate"])
-    lines = [
-        [f"{slot:g}", discs, len(of), np.mean(of), np.std(of, ddof=1) if len(of) > 1 else None]
-        for (slot, discs), of in groups.items()
-    ]
-    print_table("discs out of a planar hopper", ["slot / d", "discs", "seeds", "discs/s", "deviation"], lines)
-    usual = [row for row in rows if row["discs"] == FILLING]
+        groups.setdefault((row["slot"] / DIAMETER, row["discs"]), []).append(row)
+    lines = []
+    for (slot, discs), of in groups.items():
+        rates, ratios = [row["rate"] for row in of], [row["later"] / row["rate"] for row in of]
+        spread = [float(np.std(values, ddof=1)) if len(of) > 1 else None for values in (rates, ratios)]
+        lines.append([f"{slot:g}", discs, len(of), np.mean(rates), spread[0], np.mean(ratios), spread[1]])
+    columns = ["slot / d", "discs", "seeds", "discs/s", "deviation", "later / rate", "deviation"]
+    print_table("discs out of a planar hopper", columns, lines)
+    usual = [row for row in rows if row["discs"] == filling]
     slots, rates = (np.array([row[name] for row in usual]) for name in ("slot", "rate"))
     for power in (1.5, None):
         if len(np.unique(slots)) < (2 if power else 3):
@@ -110,6 +120,7 @@ def parsed(words: Sequence[str] | None = None) -> argparse.Namespace:
     """Return what the command line asks for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--slots", nargs="*", type=float, default=SLOTS, metavar="D", help="m")
+    parser.add_argument("--discs", type=int, default=FILLING, metavar="N", help="at all slots")
     parser.add_argument("--fillings", nargs="*", type=int, default=FILLINGS, metavar="N", help=f"discs, slot {AT} m")
     parser.add_argument("--seeds", nargs="+", type=int, default=(1, 2, 3))
     parser.add_argument("--dt", type=float, default=2e-4, help="s")
@@ -123,14 +134,14 @@ def main(words: Sequence[str] | None = None) -> None:
     asked = parsed(words)
     record = Record("hopper_rate")
     record.print_origin()
-    cases = [(slot, FILLING) for slot in asked.slots] + [(AT, discs) for discs in asked.fillings]
+    cases = [(slot, asked.discs) for slot in asked.slots] + [(AT, discs) for discs in asked.fillings]
     if asked.quick:
         asked.seeds, cases = (1,), [(AT, 100)]
     for seed in asked.seeds:
         for slot, discs in cases:
             record.add(**discharge(slot, discs, seed, asked.dt, 0.1 if asked.quick else LONGEST))
             record.write(asked.output / "hopper_rate.csv")
-    report(record.rows)
+    report(record.rows, asked.discs)
 
 
 if __name__ == "__main__":

@@ -159,6 +159,7 @@ FILES = {
             "seed",
             "dt",
             "rate",
+            "later",
             "discharged",
             "seconds",
             "given_up",
