@@ -3,7 +3,7 @@
 
 The scene is inputs/in.hopper2d: 1500 discs of 0.8 to 1.2 mm, friction 0.5, here with solver auto to 1e-3. The rate is
 the slope of the number of discs below the slot over time, from 0.05 s after the opening until half of them are out, and
-`later` is the slope from there until three quarters are. The fit is rate = C (slot / d - k)^p over all runs with as many
+`later` is the slope from there until three quarters are. The fit is rate = C (slot / d - k)^p over all runs of so many
 discs, in logarithms: with p = 3/2, then with p free. Errors of fits are standard deviations over fits of as many runs,
 drawn with replacement from those of each slot.
 
