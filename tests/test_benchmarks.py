@@ -112,6 +112,60 @@ FILES = {
             "cpu_seconds",
         }
     },
+    "incline_stop": {
+        "incline_stop.csv": {
+            "angle",
+            "dt",
+            "seed",
+            "velocity",
+            "stopped_after",
+            "seconds",
+            "cpu_seconds",
+        }
+    },
+    "drum_angle": {
+        "drum_angle.csv": {
+            "kind",
+            "friction",
+            "seed",
+            "dt",
+            "angle",
+            "deviation",
+            "by_then",
+            "given_up",
+            "cpu_seconds",
+        }
+    },
+    "long_rest": {
+        "long_rest.csv": {
+            "case",
+            "seed",
+            "step",
+            "rise",
+            "moved",
+            "speed",
+            "spin",
+            "fastest",
+            "momentum",
+            "overlap_ratio",
+            "contacts",
+            "cpu_seconds",
+        }
+    },
+    "hopper_rate": {
+        "hopper_rate.csv": {
+            "slot",
+            "discs",
+            "seed",
+            "dt",
+            "rate",
+            "later",
+            "discharged",
+            "seconds",
+            "given_up",
+            "cpu_seconds",
+        }
+    },
     "friction_scenes": {
         "friction_scenes.csv": {
             "scene",
