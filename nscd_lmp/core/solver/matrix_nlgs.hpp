@@ -110,8 +110,6 @@ class MatrixSweeps {
 
 template <class Law>
 struct MatrixNlgs {
-  static constexpr double default_parameter = 1;   // as Nlgs
-
   template <class F>
   static SolverReport solve(GlobalProblem &problem, const F &, const SolverOptions &options)
   {

@@ -157,6 +157,12 @@ struct Nlgs {
     else return with_parts(problem, mechanics, options);
   }
 
+  template <class F>
+  static SolverReport solve(GlobalProblem &problem, const F &frame, const SolverOptions &options)
+  {
+    return MatrixNlgs<Law>::solve(problem, frame, options);
+  }
+
  private:
   static double *carried(Problem &problem, std::size_t doubles)
   {
@@ -220,7 +226,7 @@ SolverEntry local_law(const LocalLawEntry &law)
           .friction = true,
           .ranks = true,
           .solve = on_any_grains<Nlgs<Law>>,
-          .solve_global = on_any_matrix<MatrixNlgs<Law>>};
+          .solve_global = on_any_matrix<Nlgs<Law>>};
 }
 
 }    // namespace nscd

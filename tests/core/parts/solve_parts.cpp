@@ -144,16 +144,16 @@ static void solve(std::string_view solver, std::string_view door, const Given<Sp
 }
 
 // A solver with its two doors: the bodies themselves, and their matrix.
-template <class OnBodies, class OnMatrix, class Space, class Make>
+template <class Solver, class Space, class Make>
 static void both(std::string_view solver, const Given<Space> &given, Make make, nscd::SolverOptions options,
                  double parameter)
 {
   options.parameter = parameter;
   solve(solver, "bodies", given, make, [](nscd::Problem &problem, const auto &mechanics, const auto &asked) {
-    return OnBodies::solve(problem, mechanics, asked);
+    return Solver::solve(problem, mechanics, asked);
   }, options);
   solve(solver, "matrix", given, make, [](nscd::Problem &problem, const auto &mechanics, const auto &asked) {
-    return nscd::Assembled<OnMatrix>::solve(problem, mechanics, asked);
+    return nscd::Assembled<Solver>::solve(problem, mechanics, asked);
   }, options);
 }
 
@@ -164,16 +164,16 @@ static void all_solvers(const nscd::SolverOptions &options, Make make)
   constexpr double step = 0.15;   // rho of SBP and SAL: below 2 / W of every part
   Given<Space> given;
   given.read();
-  both<Nlgs<Sbp>, MatrixNlgs<Sbp>>("sbp", given, make, options, step);
-  both<Nlgs<Sal>, MatrixNlgs<Sal>>("sal", given, make, options, step);
-  both<Nlgs<Ebp>, MatrixNlgs<Ebp>>("ebp", given, make, options, 1);
-  both<Nlgs<Eal>, MatrixNlgs<Eal>>("eal", given, make, options, 1);
-  both<Nlgs<Pdas>, MatrixNlgs<Pdas>>("pdas", given, make, options, 1);
-  both<Apgs, Apgs>("apgs", given, make, options, 1);
-  both<Auto, Auto>("auto", given, make, options, 1);
+  both<Nlgs<Sbp>>("sbp", given, make, options, step);
+  both<Nlgs<Sal>>("sal", given, make, options, step);
+  both<Nlgs<Ebp>>("ebp", given, make, options, 1);
+  both<Nlgs<Eal>>("eal", given, make, options, 1);
+  both<Nlgs<Pdas>>("pdas", given, make, options, 1);
+  both<Apgs>("apgs", given, make, options, 1);
+  both<Auto>("auto", given, make, options, 1);
   using M = decltype(make(given));
   if constexpr (InteriorPoint::takes<typename M::Frame>)
-    both<Assembled<InteriorPoint>, InteriorPoint>("interior_point", given, make, options, 1);
+    both<Assembled<InteriorPoint>>("interior_point", given, make, options, 1);
 }
 
 template <class Space>

@@ -270,7 +270,7 @@ const RegisterSolver registered({.order = 70,
                                  .friction = false,
                                  .ranks = false,
                                  .solve = on_any_grains<Assembled<FactorisedFaces>>,
-                                 .solve_global = on_any_matrix<FactorisedFaces>});
+                                 .solve_global = on_any_matrix<Assembled<FactorisedFaces>>});
 
 }    // namespace
 

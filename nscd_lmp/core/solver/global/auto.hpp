@@ -125,18 +125,7 @@ class Relay {
   SolverReport report_;
 };
 
-// What factorises: on grains by their matrix.
-template <class Solver, class AnyProblem>
-struct OfProblem {
-  using type = Solver;
-};
-template <class Solver>
-struct OfProblem<Solver, Problem> {
-  using type = Assembled<Solver>;
-};
-template <class Sweeps, class MatrixSweeps, class AnyProblem>
-using Sweeping = std::conditional_t<std::is_same_v<AnyProblem, Problem>, Sweeps, MatrixSweeps>;
-
+// The frame of contacts, or of what a mechanics makes of them.
 template <class Contacts>
 struct FrameOfContacts {
   using type = Contacts;
@@ -153,16 +142,15 @@ struct Auto {
     using F = typename FrameOfContacts<Contacts>::type;
     constexpr bool friction = F::dim > 1;
     using Factorising = std::conditional_t<friction, InteriorPoint, FactorisedFaces>;
-    using Nlgs = Sweeping<nscd::Nlgs<Pdas>, MatrixNlgs<Pdas>, AnyProblem>;
     Relay<AnyProblem, Contacts> relay(problem, contacts, options);
     if constexpr (!friction || InteriorPoint::takes<F>) {
       if (!on_several_ranks(problem)) {
         relay.template hand_to<Apgs>(friction ? interior_point_in_sweeps(problem) : active_set_in_sweeps(problem));
-        relay.template try_factorising<typename OfProblem<Factorising, AnyProblem>::type>();
+        relay.template try_factorising<Assembled<Factorising>>();
       }
     }
     relay.template hand_to<Apgs>(relay.sweeps_left() / 2);
-    relay.template hand_to<Nlgs>();
+    relay.template hand_to<Nlgs<Pdas>>();
     return relay.report();
   }
 };

@@ -218,7 +218,7 @@ const RegisterSolver registered({.order = 80,
                                  .friction = true,
                                  .ranks = false,
                                  .solve = on_any_grains<Assembled<InteriorPoint>>,
-                                 .solve_global = on_any_matrix<InteriorPoint>});
+                                 .solve_global = on_any_matrix<Assembled<InteriorPoint>>});
 
 }    // namespace
 

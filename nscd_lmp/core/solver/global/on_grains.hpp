@@ -36,7 +36,7 @@ SolverReport solve_assembled(Problem &grains, const M &mechanics, const SolverOp
   return report;
 }
 
-// The same of a struct whose solve() takes any frame.
+// The same of a struct whose solve() takes any frame; a matrix it is handed goes to that as it is.
 template <class Solver>
 struct Assembled {
   static constexpr double default_parameter = Solver::default_parameter;
@@ -47,6 +47,12 @@ struct Assembled {
     return solve_assembled(grains, mechanics, options, [](GlobalProblem &problem, const SolverOptions &asked) {
       return Solver::solve(problem, typename M::Frame{}, asked);
     });
+  }
+
+  template <class F>
+  static SolverReport solve(GlobalProblem &problem, const F &frame, const SolverOptions &options)
+  {
+    return Solver::solve(problem, frame, options);
   }
 };
 
