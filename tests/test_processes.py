@@ -18,7 +18,8 @@ from sweep_cases import is_running, wait_for
 pytestmark = pytest.mark.fast
 
 SLEEP = ["sleep", "321"]
-# as a test, but of the mark -1: what is left behind is no matter of this session's
+# No process has this number, so what is left behind is no matter of this session's; another's tests have another.
+NUMBER = -os.getpid()
 PROGRAM = """
 import subprocess, sys, processes
 processes.mark()
@@ -30,18 +31,18 @@ sys.stdin.read()
 @pytest.mark.parametrize("words", [SLEEP, ["sh", "-c", "sleep 321 &"]])
 def test_process_that_is_left_behind_is_told_and_ended(monkeypatch: pytest.MonkeyPatch, words: list[str]) -> None:
     monkeypatch.setattr(processes, "SECONDS_TO_END", 0.2)
-    child = subprocess.Popen(words, env=os.environ | {processes.MARK: "-1"}, start_new_session=True)
+    child = subprocess.Popen(words, env=os.environ | {processes.MARK: f"{NUMBER}"}, start_new_session=True)
     if words[0] == "sh":
         child.wait()  # its own child is nobody's
-    assert processes.end(-1) == [" ".join(SLEEP)]
-    wait_for(lambda: not processes.left(-1), "the end", 5)
+    assert processes.end(NUMBER) == [" ".join(SLEEP)]
+    wait_for(lambda: not processes.left(NUMBER), "the end", 5)
     child.wait()
 
 
 def test_process_that_ends_by_itself_is_waited_for() -> None:
-    child = subprocess.Popen(["sleep", "0.3"], env=os.environ | {processes.MARK: "-1"})
-    assert processes.left(-1)
-    assert processes.end(-1) == []
+    child = subprocess.Popen(["sleep", "0.3"], env=os.environ | {processes.MARK: f"{NUMBER}"})
+    assert processes.left(NUMBER)
+    assert processes.end(NUMBER) == []
     child.wait()
 
 

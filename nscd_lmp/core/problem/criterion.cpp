@@ -13,13 +13,6 @@ Criterion measure(const Problem &problem, const double *local_velocity)
   return with_mechanics(problem, [&](const auto &mechanics) { return measure(problem, mechanics, local_velocity); });
 }
 
-Criterion measure(const GlobalProblem &problem, const double *u, const double *local_velocity)
-{
-  Criterion seen;
-  with_frame(problem.dim(), [&](const auto &frame) { seen = measure(problem, frame, u, local_velocity); });
-  return seen;
-}
-
 template Criterion measure(const Problem &, const Frictionless &, const double *);
 template Criterion measure(const Problem &, const Frictional<Planar> &, const double *);
 template Criterion measure(const Problem &, const Frictional<Spatial> &, const double *);

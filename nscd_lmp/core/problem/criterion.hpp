@@ -51,9 +51,6 @@ Criterion measure(const Problem &problem, const M &mechanics, const double *loca
 template <class F>
 Criterion measure(const GlobalProblem &problem, const F &frame, const double *u, const double *local_velocity);
 
-// For whom the frame is of no matter.
-Criterion measure(const GlobalProblem &problem, const double *u, const double *local_velocity = nullptr);
-
 extern template Criterion measure(const Problem &, const Frictionless &, const double *);
 extern template Criterion measure(const Problem &, const Frictional<Planar> &, const double *);
 extern template Criterion measure(const Problem &, const Frictional<Spatial> &, const double *);

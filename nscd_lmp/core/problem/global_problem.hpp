@@ -10,6 +10,7 @@
 #include "contact/material.hpp"
 #include "problem/block_matrix.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -27,8 +28,12 @@ struct GlobalProblem {
 
   int dim() const { return w.dim; }
   std::size_t contacts() const { return w.rows(); }
-  // Of contacts that have one disc or none.
-  double friction(std::size_t k) const { return mu.empty() ? 0.0 : mu[k]; }
+  // Whether a disc of the contact is infinite.
+  bool sticks(std::size_t k) const
+  {
+    const std::size_t discs = mu.size() / contacts();
+    return std::ranges::any_of(mu.subspan(k * discs, discs), [](double x) { return std::isinf(x); });
+  }
 };
 
 // F is the frame of the contacts.

@@ -171,9 +171,7 @@ static void all_solvers(const nscd::SolverOptions &options, Make make)
   both<Nlgs<Pdas>>("pdas", given, make, options, 1);
   both<Apgs>("apgs", given, make, options, 1);
   both<Auto>("auto", given, make, options, 1);
-  using M = decltype(make(given));
-  if constexpr (InteriorPoint::takes<typename M::Frame>)
-    both<Assembled<InteriorPoint>>("interior_point", given, make, options, 1);
+  both<Assembled<InteriorPoint>>("interior_point", given, make, options, 1);
 }
 
 template <class Space>

@@ -143,11 +143,9 @@ struct Auto {
     constexpr bool friction = F::dim > 1;
     using Factorising = std::conditional_t<friction, InteriorPoint, FactorisedFaces>;
     Relay<AnyProblem, Contacts> relay(problem, contacts, options);
-    if constexpr (!friction || InteriorPoint::takes<F>) {
-      if (!on_several_ranks(problem)) {
-        relay.template hand_to<Apgs>(friction ? interior_point_in_sweeps(problem) : active_set_in_sweeps(problem));
-        relay.template try_factorising<Assembled<Factorising>>();
-      }
+    if (!on_several_ranks(problem)) {
+      relay.template hand_to<Apgs>(friction ? interior_point_in_sweeps(problem) : active_set_in_sweeps(problem));
+      relay.template try_factorising<Assembled<Factorising>>();
     }
     relay.template hand_to<Apgs>(relay.sweeps_left() / 2);
     relay.template hand_to<Nlgs<Pdas>>();

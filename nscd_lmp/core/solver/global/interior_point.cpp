@@ -17,6 +17,7 @@
 //   the end  Newton's method on the projections (newton_end.hpp) leaves round-off as the only error, where the path
 //            runs out of digits at 1e-8. It comes first of all too: starts that know what contacts do take few steps.
 //   starts   two: the impulses given, moved into the cones, then a centre far inside.
+//   several  discs of a contact are cones of their own with the same x_0: S^2 is the sum of theirs.
 //   stick    mu infinite is a finite one on the path, and exact at the end. Contacts with mu = 0 are half lines.
 // Impulses are judged by measure() alone, and the best met are returned, by what tol is compared with.
 //
@@ -58,11 +59,11 @@ constexpr int once = 1, patient = 4;  // Newton steps without a gain
 // Measures impulses and keeps the best of them, by what tol is compared with.
 class Best {
  public:
-  Best(GlobalProblem &problem, const SolverOptions &options) :
-      problem_(problem), options_(options), kept_(problem.p.begin(), problem.p.end()), u_(kept_.size())
+  Best(GlobalProblem &problem, const MeasuredFrame &frame, const SolverOptions &options) :
+      problem_(problem), frame_(frame), options_(options), kept_(problem.p.begin(), problem.p.end()), u_(kept_.size())
   {
     find_velocities();
-    report_.criterion = measure(problem_, u_.data());
+    report_.criterion = frame_.measured(problem_, u_.data());
     trusted_ = is_trustworthy();
     report_.converged = trusted_ && solved(report_.criterion, options_);
   }
@@ -72,7 +73,7 @@ class Best {
     std::copy(p.begin(), p.end(), problem_.p.begin());
     find_velocities();
     if (open_sticking_contacts()) find_velocities();
-    const Criterion now = measure(problem_, u_.data());
+    const Criterion now = frame_.measured(problem_, u_.data());
     if (!is_trustworthy() || (trusted_ && value() <= judged(now, options_))) return;
     trusted_ = true;
     report_.criterion = now;
@@ -125,7 +126,7 @@ class Best {
     bool any = false;
     for (std::size_t k = 0; k < problem_.contacts(); ++k) {
       double *p = &problem_.p[k * dim];
-      if (!std::isinf(problem_.friction(k)) || !(problem_.diagonals[k].w * *p < u_[k * dim])) continue;
+      if (!problem_.sticks(k) || !(problem_.diagonals[k].w * *p < u_[k * dim])) continue;
       std::fill_n(p, dim, 0.0);
       any = true;
     }
@@ -133,6 +134,7 @@ class Best {
   }
 
   GlobalProblem &problem_;
+  const MeasuredFrame &frame_;
   const SolverOptions &options_;
   SolverReport report_;
   std::vector<double> kept_, u_;
@@ -140,15 +142,19 @@ class Best {
 };
 
 // The stages of the search. Each goes on from the best impulses met.
+template <int most>
 class Search {
  public:
-  Search(const UnitCones &cones, std::size_t contacts, Best &best) :
+  using Cones = UnitCones<most>;
+  using Vectors = typename Cones::Vectors;
+
+  Search(const Cones &cones, std::size_t contacts, Best &best) :
       cones_(cones), contacts_(contacts), best_(best), path_(cones), newton_(cones)
   {
   }
 
   // Steps from the impulses given until solved or until the path ends: round-off, or a fold.
-  void follow_path(const UnitCones::Vectors &start, const Tuning &tuning)
+  void follow_path(const Vectors &start, const Tuning &tuning)
   {
     int short_steps = 0;
     path_.start(start, tuning.shift);
@@ -163,7 +169,7 @@ class Search {
   // As long as `patience` steps together bring a gain.
   void newton(int patience)
   {
-    UnitCones::Vectors x = best();
+    Vectors x = best();
     for (int s = 0, idle = 0; idle < patience && s < most_newton_steps && best_.goes_on(); ++s) {
       const double before = best_.value();
       if (!newton_.step(path_.factor(), x)) return best_.count_iteration();
@@ -172,41 +178,49 @@ class Search {
     }
   }
 
-  UnitCones::Vectors best() const { return cones_.from_impulses(best_.impulses().data()); }
+  Vectors best() const { return cones_.from_impulses(best_.impulses().data()); }
 
  private:
-  void look(const UnitCones::Vectors &x)
+  void look(const Vectors &x)
   {
     best_.look(cones_.impulses(x, contacts_));
     best_.count_iteration();
   }
 
-  const UnitCones &cones_;
+  const Cones &cones_;
   const std::size_t contacts_;
   Best &best_;
-  CentralPath path_;
-  NewtonEnd newton_;
+  CentralPath<most> path_;
+  NewtonEnd<most> newton_;
 };
 
-}    // namespace
-
-SolverReport InteriorPoint::solve(GlobalProblem &problem, const SolverOptions &options)
+template <int most>
+SolverReport search_cones(GlobalProblem &problem, const MeasuredFrame &frame, const SolverOptions &options)
 {
-  if (problem.contacts() == 0) return {};
-  Best best(problem, options);
+  Best best(problem, frame, options);
   best.look(std::vector<double>(problem.p.size(), 0.0));
-  const UnitCones cones(problem);
+  const UnitCones<most> cones(problem, frame.groups);
   if (!best.goes_on() || cones.size() == 0 || !(cones.speed() > 0)) {
     best.count_iteration();
     return best.finish();
   }
-  Search search(cones, problem.contacts(), best);
+  Search<most> search(cones, problem.contacts(), best);
   search.newton(once);
   search.follow_path(search.best(), from_start);
   search.newton(patient);
-  search.follow_path(UnitCones::Vectors(cones.size(), cone::Vector::Zero()), from_centre);
+  search.follow_path(cones.zero(), from_centre);
   search.newton(patient);
   return best.finish();
+}
+
+}    // namespace
+
+SolverReport InteriorPoint::search(GlobalProblem &problem, const MeasuredFrame &frame, const SolverOptions &options)
+{
+  constexpr int slides = 3;
+  if (problem.contacts() == 0) return {};
+  return problem.dim() <= slides ? search_cones<slides>(problem, frame, options)
+                                 : search_cones<most_unknowns>(problem, frame, options);
 }
 
 namespace {

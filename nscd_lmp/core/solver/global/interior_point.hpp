@@ -2,28 +2,35 @@
 // The interior point (interior_point.cpp), for AUTO and for the registry.
 #pragma once
 
-#include "base/error.hpp"
+#include "problem/criterion.hpp"
 #include "solver/solver.hpp"
 
+#include <span>
+
 namespace nscd {
+
+// What is needed of a frame where nothing is compiled for each.
+struct MeasuredFrame {
+  std::span<const int> groups;
+  Criterion (*measured)(const GlobalProblem &problem, const double *u);
+};
 
 class InteriorPoint {
  public:
   static constexpr double default_parameter = 0;
-  // A contact has one cone here.
-  template <class F>
-  static constexpr bool takes = F::discs <= 1;
 
   template <class F>
   static SolverReport solve(GlobalProblem &problem, const F &, const SolverOptions &options)
   {
-    if constexpr (!takes<F>) fail("solver interior_point is for contacts that only slide: choose another");
+    static_assert(F::dim <= most_unknowns);
     find_diagonals<F>(problem);
-    return solve(problem, options);
+    constexpr auto measured = [](const GlobalProblem &p, const double *u) { return measure(p, F{}, u, nullptr); };
+    return search(problem, {F::groups, measured}, options);
   }
 
  private:
-  static SolverReport solve(GlobalProblem &problem, const SolverOptions &options);
+  static constexpr int most_unknowns = 6;  // of a contact
+  static SolverReport search(GlobalProblem &problem, const MeasuredFrame &frame, const SolverOptions &options);
 };
 
 }    // namespace nscd

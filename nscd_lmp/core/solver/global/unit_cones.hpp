@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// A contact problem scaled so that Coulomb's cones are all the unit one: p_n = x_0 r / mu, p_t = x_t r, r = W_nn^-1/2.
+// A contact problem scaled so that Coulomb's cones are all unit ones: p_n = x_0 r / m, p_d = x_d r mu_d / m for each of
+// the contact's discs, with m its largest coefficient and r = W_nn^-1/2.
 //
-// Without friction the half line x_0 >= 0 is left; a contact that no impulse moves (no W_nn > 0) is left out.
+// Where no disc rubs, the half line x_0 >= 0 is left; a contact that no impulse moves (no W_nn > 0) is left out.
 #pragma once
 
 #include "problem/global_problem.hpp"
@@ -10,26 +11,38 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace nscd {
 
+// The part of a contact's unknowns whose length x_0 bounds; without axes, that of a half line.
+struct Tail {
+  int first = 1, axes = 0;
+  bool sticks = false;  // however weakly the contact pushes
+};
+
+// `most` unknowns a contact at most.
+template <int most>
 class UnitCones {
  public:
-  using Vectors = std::vector<cone::Vector>;
+  using Vector = Eigen::Matrix<double, most, 1>;
+  using Matrix = Eigen::Matrix<double, most, most>;
+  using Vectors = std::vector<Vector>;
   struct Block {
     int column;  // among the contacts kept
-    cone::Matrix value;
+    Matrix value;
   };
 
-  explicit UnitCones(const GlobalProblem &problem) : dim_(problem.dim())
+  // `groups`: rows of a contact by what they belong to, as Frame has them.
+  UnitCones(const GlobalProblem &problem, std::span<const int> groups) : dim_(problem.dim())
   {
     std::vector<int> place(problem.contacts(), -1);
     for (std::size_t k = 0; k < problem.contacts(); ++k) {
       const double *own = problem.w.diagonal(k);
       if (!own || !(own[0] > 0)) continue;
       place[k] = size();
-      add_contact(problem, k, 1 / std::sqrt(own[0]));
+      add_contact(problem, k, groups, 1 / std::sqrt(own[0]));
     }
     for (int k = 0; k < size(); ++k) {
       const auto row = contact_[k];
@@ -47,10 +60,16 @@ class UnitCones {
   int width(int k) const { return first_[k + 1] - first_[k]; }
   int unknowns() const { return first_.back(); }
 
-  // Whether the contact cannot slip however weakly it pushes.
-  bool sticks(int k) const { return sticks_[k]; }
+  // The cones of a contact, of all contacts one after another: one at least.
+  std::span<const Tail> tails(int k) const
+  {
+    return {tails_.data() + tail_start_[k], tail_start_[k + 1] - tail_start_[k]};
+  }
+  std::size_t cone(int k) const { return tail_start_[k]; }
+  std::size_t cones() const { return tails_.size(); }
+
   // The contact's own block.
-  const cone::Matrix &own(int k) const { return own_[k]; }
+  const Matrix &own(int k) const { return own_[k]; }
 
   // f(block) for all blocks of a row.
   template <class Function>
@@ -62,7 +81,7 @@ class UnitCones {
   // W x
   Vectors responses(const Vectors &x) const
   {
-    Vectors u(size(), cone::Vector::Zero());
+    Vectors u = zero();
     for (int k = 0; k < size(); ++k)
       each(k, [&](const Block &block) { u[k].noalias() += block.value * x[block.column]; });
     return u;
@@ -80,15 +99,17 @@ class UnitCones {
   double speed() const
   {
     double sum = 0;
-    for (const cone::Vector &q : q_) sum += q.lpNorm<1>();
+    for (const Vector &q : q_) sum += q.template lpNorm<1>();
     return sum / std::max(1, unknowns());
   }
 
+  Vectors zero() const { return Vectors(size(), Vector::Zero()); }
+
   Vectors from_impulses(const double *p) const
   {
-    Vectors x(size(), cone::Vector::Zero());
+    Vectors x = zero();
     for (int k = 0; k < size(); ++k)
-      for (int a = 0; a < width(k); ++a) x[k][a] = p[contact_[k] * dim_ + a] / unit_[k][a];
+      for (int a = 0; a < width(k); ++a) x[k][a] = p[contact_[k] * dim_ + row(k, a)] / unit(k, a);
     return x;
   }
 
@@ -96,44 +117,83 @@ class UnitCones {
   {
     std::vector<double> p(contacts * dim_, 0.0);
     for (int k = 0; k < size(); ++k)
-      for (int a = 0; a < width(k); ++a) p[contact_[k] * dim_ + a] = unit_[k][a] * x[k][a];
+      for (int a = 0; a < width(k); ++a) p[contact_[k] * dim_ + row(k, a)] = unit(k, a) * x[k][a];
     return p;
   }
 
  private:
   // Coefficients that are as good as none or as stick: their squares, times W, must neither overflow nor vanish.
   // Infinite friction gets a cone that is wide and not yet flat.
-  static constexpr double none = 1e-12, most = 1e4, for_infinite = 30;
+  static constexpr double none = 1e-12, widest = 1e4, for_infinite = 30;
 
-  void add_contact(const GlobalProblem &problem, std::size_t k, double root)
+  // An unknown: a row of the contact in the problem, and its unit.
+  struct Unknown {
+    int row;
+    double unit;
+  };
+
+  static double coefficient(double mu) { return std::isinf(mu) ? for_infinite : std::min(mu, widest); }
+
+  void add_contact(const GlobalProblem &problem, std::size_t k, std::span<const int> groups, double root)
   {
-    const bool sticks = std::isinf(problem.friction(k));
-    const double mu = sticks ? for_infinite : std::min(problem.friction(k), most);
-    const bool rubs = mu > none;
+    const std::size_t discs = groups.size() - 1;
+    const double *mu = problem.mu.data() + k * discs;
+    double largest = 0;
+    for (std::size_t d = 0; d < discs; ++d) largest = std::max(largest, coefficient(mu[d]));
+    const bool rubs = largest > none;
+    unknowns_.push_back({0, rubs ? root / largest : root});
+    for (std::size_t d = 0, row = 1; d < discs; row += std::size_t(groups[++d])) {
+      if (!(coefficient(mu[d]) > none)) continue;
+      tails_.push_back({int(unknowns_.size()) - first_.back(), groups[d + 1], std::isinf(mu[d])});
+      for (int a = 0; a < groups[d + 1]; ++a)
+        unknowns_.push_back({int(row) + a, root * (coefficient(mu[d]) / largest)});
+    }
+    if (!rubs) tails_.push_back({});
+    tail_start_.push_back(tails_.size());
     contact_.push_back(k);
-    sticks_.push_back(sticks);
-    first_.push_back(first_.back() + (rubs ? dim_ : 1));
-    unit_.emplace_back(rubs ? root / mu : root, root, root);
-    q_.push_back(cone::Vector::Zero());
-    for (int a = 0; a < width(size() - 1); ++a) q_.back()[a] = unit_.back()[a] * problem.q[k * dim_ + a];
+    first_.push_back(int(unknowns_.size()));
+    q_.push_back(Vector::Zero());
+    const int added = size() - 1;
+    for (int a = 0; a < width(added); ++a) q_.back()[a] = unit(added, a) * problem.q[k * dim_ + row(added, a)];
   }
 
-  cone::Matrix scaled(int k, int j, const double *block) const
+  int row(int k, int a) const { return unknowns_[first_[k] + a].row; }
+  double unit(int k, int a) const { return unknowns_[first_[k] + a].unit; }
+
+  Matrix scaled(int k, int j, const double *block) const
   {
-    cone::Matrix m = cone::Matrix::Zero();
+    Matrix m = Matrix::Zero();
     for (int a = 0; a < width(k); ++a)
-      for (int b = 0; b < width(j); ++b) m(a, b) = unit_[k][a] * unit_[j][b] * block[dim_ * a + b];
+      for (int b = 0; b < width(j); ++b) m(a, b) = unit(k, a) * unit(j, b) * block[dim_ * row(k, a) + row(j, b)];
     return m;
   }
 
   const int dim_;
   std::vector<std::size_t> contact_;  // of the problem
   std::vector<int> first_{0};
-  std::vector<bool> sticks_;
-  Vectors unit_, q_;
-  std::vector<cone::Matrix> own_;
+  std::vector<Unknown> unknowns_;
+  std::vector<std::size_t> tail_start_{0};
+  std::vector<Tail> tails_;
+  Vectors q_;
+  std::vector<Matrix> own_;
   std::vector<std::size_t> row_start_{0};
   std::vector<Block> blocks_;
 };
+
+// The cone in a contact's vector, and the way back.
+template <int most>
+cone::Vector in_cone(const Eigen::Matrix<double, most, 1> &x, const Tail &tail)
+{
+  cone::Vector c(x[0], 0, 0);
+  for (int a = 0; a < tail.axes; ++a) c[1 + a] = x[tail.first + a];
+  return c;
+}
+
+template <int most>
+void add_cone(Eigen::Matrix<double, most, 1> &x, const Tail &tail, const cone::Vector &c)
+{
+  x[0] += c[0];
+  for (int a = 0; a < tail.axes; ++a) x[tail.first + a] += c[1 + a];
+}
 
 }    // namespace nscd
