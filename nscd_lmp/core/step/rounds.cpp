@@ -11,16 +11,15 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <utility>
 
 namespace nscd {
 
 constexpr int first_sweeps = 32, most_sweeps = 128;   // of brief rounds; each has twice those of the one before
 
 Rounds::Rounds(State &state, Scheme &scheme, Solves &solves, WarmStart &memory, Sought sought, bool looks_ahead,
-               WatchUnlisted watch_unlisted) :
+               ListWatch &watch) :
     state_(state), scheme_(scheme), solves_(solves), memory_(memory), sought_(sought), looks_ahead_(looks_ahead),
-    watch_unlisted_(std::move(watch_unlisted))
+    watch_(watch)
 {
 }
 
@@ -129,7 +128,7 @@ bool Rounds::promote(const PairList &pairs)
 {
   const std::size_t before = state_.table.size();
   std::size_t more = 0;
-  watch_unlisted_();
+  watch_.watch_unlisted();
   together(state_.exec.halo, [&] {
     watch_farther(state_, pairs);
     if (looks_ahead_) more = promote_near(state_);

@@ -10,11 +10,11 @@
 #include "scene/state.hpp"
 #include "scheme/scheme.hpp"
 #include "step/calm.hpp"
+#include "step/list_watch.hpp"
 #include "step/solves.hpp"
 #include "warm_start/warm_start.hpp"
 
 #include <cstdint>
-#include <functional>
 
 namespace nscd {
 
@@ -27,12 +27,9 @@ class Rounds {
     bool impacts_left = false;   // impacts under restitution that did not end were taken as inelastic
     double calmed = 0;           // kinetic energy taken from jammed islands, J; of this rank
   };
-  // Adds what is driven together from beyond the neighbor list to the watched pairs. Collective.
-  using WatchUnlisted = std::function<void()>;
-
   // `looks_ahead`: as the scheme does. What is handed in must outlive it.
   Rounds(State &state, Scheme &scheme, Solves &solves, WarmStart &memory, Sought sought, bool looks_ahead,
-         WatchUnlisted watch_unlisted);
+         ListWatch &watch);
 
   // Contacts have been sought: finds their impulses, and the displacements. Collective.
   Result run(const PairList &pairs);
@@ -72,7 +69,7 @@ class Rounds {
   WarmStart &memory_;
   const Sought sought_;
   const bool looks_ahead_;
-  const WatchUnlisted watch_unlisted_;
+  ListWatch &watch_;
   Calm calm_;
   Calm::Found calmed_;               // in the last solve
   AlignedVector<Body> free_bodies_;  // as gathered, where impacts may have to be resolved again

@@ -32,7 +32,7 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
     solves_(state_, settings_, std::move(custom), looks_ahead()),
     sought_(looks_ahead() && !scheme_->constants.impacts_first && solves_.can_go_on() ? Sought::foreseen
                                                                                       : Sought::within_reach),
-    rounds_(state_, *scheme_, solves_, memory_, sought_, looks_ahead(), [this] { watch_unlisted(); }),
+    rounds_(state_, *scheme_, solves_, memory_, sought_, looks_ahead(), watch_),
     crowding_(nscd::crowding(settings_.threads, ranks))
 {
   state_.exec.halo = halo_.get();
@@ -106,12 +106,9 @@ Step::Seen Step::prepare(const PairList &pairs)
   gather_images(state_, prediction_, look_ahead_, {kick2, speed2});
   drifts_.settle(state_, grown > 0, list_.is_new());
   drifts_.place(state_, state_.in.dt * prediction_, look_ahead_);
-  listed_ = -unlisted;
-  moved_ = moved + 0.5 * drifts_.neared();
   const double speed = std::sqrt(speed2) + state_.drift.fastest;
   state_.scales.round_off = 1e-14 * speed;
-  missed_.begin(pairs, listed_);
-  require_list(speed);
+  watch_.require(pairs, -unlisted, moved + 0.5 * drifts_.neared(), speed);
   return {torque > 0, state_.in.dt * speed / -smallest};
 }
 

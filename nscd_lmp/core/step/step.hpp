@@ -8,9 +8,9 @@
 #include "scene/drift/drift.hpp"
 #include "scene/left_places.hpp"
 #include "scene/list/list_guard.hpp"
-#include "scene/list/missed_pairs.hpp"
 #include "scene/state.hpp"
 #include "scheme/scheme.hpp"
+#include "step/list_watch.hpp"
 #include "step/remarks.hpp"
 #include "step/rounds.hpp"
 #include "step/solves.hpp"
@@ -19,7 +19,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <set>
 #include <span>
 
 namespace nscd {
@@ -92,12 +91,10 @@ class Step {
   WarmStart &memory() { return memory_; }
 
   // After a step: true if the next one needs a fresh neighbor list to be sure of every contact. Collective.
-  bool wants_rebuild();
+  bool wants_rebuild() { return watch_.wants_rebuild(); }
 
  private:
   bool looks_ahead() const { return look_ahead_ > 0; }
-  // How far around q_k contacts are sought, m, for a grain of this speed.
-  double longest_move(double speed) const { return state_.in.dt * speed * (look_ahead_ + prediction_); }
   // What is known of a step before its contacts are.
   struct Seen {
     bool unread_torque;
@@ -115,12 +112,6 @@ class Step {
     long unconverged = 0, accepted = 0, energy_limited = 0;
   };
   Seen prepare(const PairList &pairs);
-  void require_list(double speed);
-  void watch_unlisted();
-  void refuse_unwatchable();
-  [[noreturn]] void refuse_missed(double cutoff) const;
-  void refuse_unless_all_known() const;
-  void refuse_drifting(double ahead) const;
   void count(const Solves::Outcome &solved);
   void refuse_unsolved(const Rounds::Result &rounds) const;
   Tally finish(double calmed);
@@ -143,12 +134,10 @@ class Step {
   Remarks remarks_;
   const double prediction_;        // contacts are sought at q_k + prediction dt v_k
   const double look_ahead_;        // and this times dt |v| around (0 or 1)
+  ListWatch watch_{state_, list_, drifts_, prediction_, look_ahead_};
   Solves solves_;
   const Sought sought_;            // all pairs within reach where another round costs as much as the first
   Rounds rounds_;
-  MissedPairs missed_{list_};
-  std::set<std::pair<int, int>> unlisted_;   // pairs that were found beyond the list after a solve of this step
-  double listed_ = 0, moved_ = 0;  // as Reach has them
   const std::string crowding_;
 };
 

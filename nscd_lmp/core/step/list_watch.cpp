@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What a step needs of the neighbor list: ahead of the solve, after it, and for the step to come.
+#include "step/list_watch.hpp"
+
 #include "base/error.hpp"
-#include "step/step.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +55,7 @@ static double cutoff_to_type(const State &s, const MissedPairs &missed)
 }
 
 // Of several the one that was farthest.
-void Step::refuse_missed(double cutoff) const
+void ListWatch::refuse_missed(double cutoff) const
 {
   const auto nearer = [](const Missed &a, const Missed &b) { return a.listed < b.listed; };
   const Missed &m = *std::max_element(missed_.pairs().begin(), missed_.pairs().end(), nearer);
@@ -71,7 +71,7 @@ void Step::refuse_missed(double cutoff) const
 }
 
 // Raises Error if images do not reach as far as some grain gets.
-void Step::refuse_unless_all_known() const
+void ListWatch::refuse_unless_all_known() const
 {
   if (!missed_.beyond()) return;
   const auto [atom, distance] = *missed_.beyond();
@@ -82,7 +82,7 @@ void Step::refuse_unless_all_known() const
 }
 
 // The closer looks know how grains move, not what boxes and radii do beside it. `ahead` as Reach has it.
-void Step::refuse_drifting(double ahead) const
+void ListWatch::refuse_drifting(double ahead) const
 {
   if (state_.drift.of.empty()) return;
   fail("contacts could be missed: in a box that moves, or of grains that grow, two can be ", 2 * (moved_ + ahead),
@@ -91,10 +91,11 @@ void Step::refuse_drifting(double ahead) const
        ", or use a smaller timestep");
 }
 
-// Ahead of the solve: pairs that meet if contacts change nothing.
-void Step::require_list(double speed)
+void ListWatch::require(const PairList &pairs, double listed, double moved, double speed)
 {
+  listed_ = listed, moved_ = moved;
   unlisted_.clear();
+  missed_.begin(pairs, listed_);
   const double ahead = longest_move(speed);
   if (listed_ < 0)
     fail("contacts could be missed: pair cutoff plus neighbor skin are ", -listed_, " less than the largest diameter: ",
@@ -105,18 +106,17 @@ void Step::require_list(double speed)
   free_motion(missed_.motion(), state_, prediction_, look_ahead_);
   if (!missed_.find(state_, 0)) return;
   const double cutoff = cutoff_to_type(state_, missed_);
-  together(halo_.get(), [&] {
+  together(state_.exec.halo, [&] {
     if (!missed_.pairs().empty()) refuse_missed(cutoff);
     refuse_unless_all_known();
   });
 }
 
-// After a solve: pairs that its impulses drive together from farther apart than the list has them are watched too.
 // Where contacts are not sought ahead they can only overlap: that is reported, and no reason to refuse the step.
-void Step::watch_unlisted()
+void ListWatch::watch_unlisted()
 {
   double farthest = farthest_solved(state_, prediction_, look_ahead_) + state_.in.dt * state_.drift.fastest;
-  if (halo_) farthest = halo_->max(farthest);
+  if (state_.exec.halo) farthest = state_.exec.halo->max(farthest);
   if (Reach{listed_, moved_, farthest}.is_enough()) return;
   const bool for_contacts = look_ahead_ > 0;
   if (for_contacts) refuse_drifting(farthest);
@@ -129,17 +129,17 @@ void Step::watch_unlisted()
 }
 
 // Pairs that cannot be watched, since they may be excluded ones, or an image is not here.
-void Step::refuse_unwatchable()
+void ListWatch::refuse_unwatchable()
 {
   const double cutoff = cutoff_to_type(state_, missed_);
-  together(halo_.get(), [&] {
+  together(state_.exec.halo, [&] {
     refuse_unless_all_known();
     if (missed_.excludes() && !missed_.pairs().empty()) refuse_missed(cutoff);
   });
 }
 
 // Forces can change by as much as they do to velocities in a step.
-bool Step::wants_rebuild()
+bool ListWatch::wants_rebuild()
 {
   const double drifts = state_.in.dt * state_.drift.fastest;
   double reduced[] = {0, list_.farthest_moved(state_) + 0.5 * drifts_.neared() + drifts};
@@ -149,7 +149,7 @@ bool Step::wants_rebuild()
     const double speed = std::sqrt(speed2(b));
     farthest = std::max(farthest, longest_move(b[3] > 0 ? speed + state_.scales.smooth_kick : speed));
   }
-  if (halo_) halo_->max(reduced);
+  if (state_.exec.halo) state_.exec.halo->max(reduced);
   if (Reach{listed_, moved, farthest + drifts}.is_enough()) return false;
   if (drifts > 0) return true;
   next_motion(missed_.motion(), state_, look_ahead_ + prediction_);
