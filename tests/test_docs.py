@@ -4,6 +4,8 @@
 ``python`` blocks run as scripts, ``bash`` blocks under ``bash -eu``, ``lammps`` blocks as input of ``lmp``; those in
 ``cpp`` are for test_recipes.py; others are text. An HTML comment on the line before a block can say otherwise:
 ``<!-- not run: reason -->``, or ``<!-- command: name -->``, which marks README's two command lines.
+
+Of a block that has nothing but quick benchmarks, all of which test_benchmarks.py runs, the first line alone is run.
 """
 
 from __future__ import annotations
@@ -13,10 +15,12 @@ import re
 import subprocess
 import sys
 import sysconfig
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from pages import PAGES, README, Block, blocks, prose, title
+from test_benchmarks import FILES as BENCHMARKS
 
 import nscd_lmp
 from nscd_lmp._choices import KEYWORDS
@@ -43,6 +47,13 @@ def run(block: Block, folder: Path, where: str) -> None:
         pytest.fail(f"{where}: exit status {done.returncode}\n{block.text}\n{done.stdout[-3000:]}", pytrace=False)
 
 
+def without_benchmarks(block: Block) -> Block:
+    """Return the block, or its first line if all are benchmarks that test_benchmarks.py runs with ``--quick``."""
+    quick = {f"python benchmarks/{name}.py --quick" for name in BENCHMARKS}
+    lines = block.text.splitlines()
+    return replace(block, text=lines[0] + "\n") if set(lines) <= quick else block
+
+
 @pytest.mark.parametrize("page", PAGES, ids=title)
 def test_blocks_run(page: Path, tmp_path: Path) -> None:
     for name in BESIDE:
@@ -50,7 +61,7 @@ def test_blocks_run(page: Path, tmp_path: Path) -> None:
             (tmp_path / name).symlink_to(ROOT / name)
     for block in blocks(page):
         if block.mark is None and block.language in COMMANDS:
-            run(block, tmp_path, f"{title(page)}, block at line {block.line}")
+            run(without_benchmarks(block), tmp_path, f"{title(page)}, block at line {block.line}")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=title)

@@ -10,7 +10,20 @@ import math
 
 import numpy as np
 import pytest
-from grain_kinds import BOTH_KINDS, DT, EVERY_KIND, EVERY_LAW, EVERY_SOLVER, RADIUS, SOLVED, STEP_ERROR, TOUCH
+from grain_kinds import (
+    BOTH_KINDS,
+    DT,
+    EVERY_LAW,
+    EVERY_SOLVER,
+    LAWS_AND_ALL_KINDS,
+    LAWS_AND_KINDS,
+    RADIUS,
+    SOLVED,
+    SOLVERS,
+    STEP_ERROR,
+    TOUCH,
+)
+from parameters import every_two_meet
 from scenes import GRAVITY, grains, harden, trajectory
 
 import nscd_lmp
@@ -37,10 +50,9 @@ def slope(start):
     return run
 
 
-@pytest.mark.parametrize(("v0", "spins"), [(1.0, 0.0), (0.0, 1.0), (1.0, -1.0)])
-@EVERY_KIND
-@EVERY_LAW
-@EVERY_SOLVER
+@every_two_meet(
+    {"solver": SOLVERS, "law, kind": LAWS_AND_ALL_KINDS, "v0, spins": [(1.0, 0.0), (0.0, 1.0), (1.0, -1.0)]}
+)
 def test_sliding_grain_rolls_once_friction_has_stopped_its_slip(slope, solver, law, kind, v0, spins):
     # slip v - s falls by kappa mu g dt a step; sphere without spin: 5/7 v0 from 2 v0 / (7 mu g) on, disc: 2/3 v0 from
     # v0 / (3 mu g) on. The third case: back spin of k v0 stops the grain dead, its slip kappa v0 takes as long as v0.
@@ -70,10 +82,7 @@ def test_grain_that_sticks_rolls_at_once(slope, solver, law, kind):
     np.testing.assert_allclose(spin, v[:, 0], rtol=0, atol=STEP_ERROR)
 
 
-@pytest.mark.parametrize("ratio", [0.5, 1 - 1e-6, 1 + 1e-6, 2.0])
-@BOTH_KINDS
-@EVERY_LAW
-@EVERY_SOLVER
+@every_two_meet({"solver": SOLVERS, "law, kind": LAWS_AND_KINDS, "ratio": [0.5, 1 - 1e-6, 1 + 1e-6, 2.0]})
 def test_grain_on_an_incline_rolls_up_to_kappa_mu_and_slides_beyond(slope, solver, law, kind, ratio):
     # ratio: tan(angle) over kappa mu, that is 7/2 mu for spheres and 3 mu for discs
     angle, steps = 0.5, 50
@@ -94,10 +103,7 @@ def test_grain_on_an_incline_rolls_up_to_kappa_mu_and_slides_beyond(slope, solve
     np.testing.assert_allclose(x[:, 1], RADIUS, rtol=0, atol=TOUCH + steps * DT * STEP_ERROR)
 
 
-@pytest.mark.parametrize("angle", [0.1, 1.5])
-@BOTH_KINDS
-@EVERY_LAW
-@EVERY_SOLVER
+@every_two_meet({"solver": SOLVERS, "law, kind": LAWS_AND_KINDS, "angle": [0.1, 1.5]})
 def test_grain_that_sticks_rolls_down_any_incline(slope, solver, law, kind, angle):
     steps = 50
     _, v, spin = slope(kind, law, steps, angle=angle, solver=solver, friction="stick")
@@ -119,10 +125,7 @@ def test_wall_has_its_own_friction_or_that_of_the_pairs(slope, law, kind, pairs,
     np.testing.assert_allclose(spin, kind.k * felt * GRAVITY * t, rtol=0, atol=20 * STEP_ERROR)
 
 
-@pytest.mark.parametrize("pairs", [0.5, "stick"])
-@BOTH_KINDS
-@EVERY_LAW
-@EVERY_SOLVER
+@every_two_meet({"solver": SOLVERS, "law, kind": LAWS_AND_KINDS, "pairs": [0.5, "stick"]})
 def test_wall_without_friction_in_a_scene_with_friction_neither_slows_nor_turns(slope, solver, law, kind, pairs):
     _, v, spin = slope(kind, law, 20, v=1.0, spin=0.3, solver=solver, friction=pairs, wall=0.0)
     np.testing.assert_allclose(v[:, 0], 1.0, rtol=1e-15)  # a rounding when it is turned into the frame

@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
-from grain_kinds import EVERY_LAW, EVERY_SOLVER
+from grain_kinds import LAWS, SOLVERS
+from parameters import every_two_meet
 from scenes import (
     DOORS,
     FLOOR,
@@ -75,10 +78,13 @@ SCENES = [
 ]
 
 
-@pytest.mark.parametrize(("friction", "walls", "e", "e_t"), SCENES)
-@PLANAR
-@EVERY_LAW
-@EVERY_SOLVER
+@every_two_meet(
+    {
+        "solver": SOLVERS,
+        "law, planar": list(itertools.product(LAWS, (False, True))),
+        "friction, walls, e, e_t": SCENES,
+    }
+)
 def test_doors_give_the_same_bits_and_columns(start, solver, law, planar, friction, walls, e, e_t):
     ends, rows, columns = [], [], []
     for door in DOORS:

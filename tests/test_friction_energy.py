@@ -11,13 +11,26 @@ import math
 
 import numpy as np
 import pytest
-from grain_kinds import BOTH_KINDS, DT, EVERY_LAW, EVERY_SOLVER, KINDS, RADIUS, SOLVED, STEP_ERROR, TOUCH
+from grain_kinds import (
+    BOTH_KINDS,
+    DT,
+    EVERY_LAW,
+    EVERY_SOLVER,
+    KINDS,
+    LAWS_AND_KINDS,
+    RADIUS,
+    SOLVED,
+    SOLVERS,
+    STEP_ERROR,
+    TOUCH,
+)
+from parameters import every_two_meet
 from scenes import GRAVITY, box_walls, cloud, grains, harden, per_atom, state, trajectory
 
 import nscd_lmp
 
 E_VALUES = (0.0, 0.5, 1.0)
-EVERY_PAIR_OF_E = pytest.mark.parametrize(("e", "e_t"), [(e, e_t) for e in E_VALUES for e_t in E_VALUES])
+EVERY_PAIR_OF_E = [(e, e_t) for e in E_VALUES for e_t in E_VALUES]
 
 
 def kinetic(balls, k, v, omega):
@@ -64,10 +77,7 @@ def energies(start):
 WORK_ERROR = 5e-7  # J
 
 
-@pytest.mark.parametrize("friction", [1e-3, 0.3, 1.0, 10.0, "stick"])
-@EVERY_PAIR_OF_E
-@BOTH_KINDS
-@EVERY_LAW
+@every_two_meet({"law, kind": LAWS_AND_KINDS, "e, e_t": EVERY_PAIR_OF_E, "friction": [1e-3, 0.3, 1.0, 10.0, "stick"]})
 def test_grains_that_touch_many_lose_energy_in_every_solved_step(energies, law, kind, e, e_t, friction):
     total, solved, stats = energies(kind, law=law, friction=friction, restitution=e, e_t=e_t)
     assert np.diff(total)[solved].max(initial=0) <= WORK_ERROR
@@ -86,10 +96,13 @@ def test_random_scene_whose_impacts_would_make_energy_is_limited_too(energies, l
     assert solved.all()
 
 
-@pytest.mark.parametrize(("e", "e_t"), [(0.0, 0.0), (0.5, 0.0), (0.5, 1.0), (1.0, 1.0)])
-@BOTH_KINDS
-@EVERY_LAW
-@EVERY_SOLVER
+@every_two_meet(
+    {
+        "solver": SOLVERS,
+        "law, kind": LAWS_AND_KINDS,
+        "e, e_t": [(0.0, 0.0), (0.5, 0.0), (0.5, 1.0), (1.0, 1.0)],
+    }
+)
 def test_every_solver_takes_energy(energies, solver, law, kind, e, e_t):
     total, solved, _ = energies(kind, solver=solver, law=law, friction=0.5, restitution=e, e_t=e_t)
     assert np.diff(total).max() <= WORK_ERROR

@@ -5,13 +5,27 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from grain_kinds import BOTH_KINDS, DT, EVERY_KIND, EVERY_LAW, EVERY_SOLVER, RADIUS, SOLVED, STEP_ERROR, TOUCH
+from grain_kinds import (
+    BOTH_KINDS,
+    DT,
+    EVERY_KIND,
+    EVERY_LAW,
+    EVERY_SOLVER,
+    LAWS_AND_ALL_KINDS,
+    LAWS_AND_KINDS,
+    RADIUS,
+    SOLVED,
+    SOLVERS,
+    STEP_ERROR,
+    TOUCH,
+)
+from parameters import every_two_meet
 from scenes import grains, harden, per_atom, state
 
 import nscd_lmp
 
 E_VALUES = (0.0, 0.5, 1.0)
-BOTH_E = pytest.mark.parametrize(("e", "e_t"), [(0.0, 0.0), (0.0, 1.0), (0.5, 0.0), (0.5, 0.5), (1.0, 0.5), (1.0, 1.0)])
+BOTH_E = [(0.0, 0.0), (0.0, 1.0), (0.5, 0.0), (0.5, 0.5), (1.0, 0.5), (1.0, 1.0)]
 # Of the slip up to which an impact sticks.
 SHARES = np.array([0.0, 0.1, 0.5, 0.9, 1 - 1e-6, 1 + 1e-6, 1.1, 2.0, 4.0])
 # tol is on the mean of criterion (42), so one of 50 contacts may have all of it; its terms are velocities and, the
@@ -47,10 +61,7 @@ def impacts(start):
     return run
 
 
-@pytest.mark.parametrize("e", E_VALUES)
-@EVERY_KIND
-@EVERY_LAW
-@EVERY_SOLVER
+@every_two_meet({"solver": SOLVERS, "law, kind": LAWS_AND_ALL_KINDS, "e": E_VALUES})
 def test_impact_sticks_up_to_kappa_mu_1_plus_e_and_rebounds_at_the_angle_of_coulomb_s_law(
     impacts, solver, law, kind, e
 ):
@@ -75,10 +86,7 @@ def test_impact_sticks_up_to_kappa_mu_1_plus_e_and_rebounds_at_the_angle_of_coul
     np.testing.assert_allclose(tangential, expected, rtol=0, atol=IMPACT_ERROR)
 
 
-@BOTH_E
-@BOTH_KINDS
-@EVERY_LAW
-@EVERY_SOLVER
+@every_two_meet({"solver": SOLVERS, "e, e_t": BOTH_E, "law, kind": LAWS_AND_KINDS})
 def test_impact_with_spin_reverses_e_t_of_its_slip_or_slides(impacts, solver, law, kind, e, e_t):
     # slip u = v_t - s; sticks iff (1 + e_t) |u| <= kappa mu (1 + e) v_n, then leaves with -e_t u
     mu, speed, spin0 = 0.2, 1.0, np.array([0.0, 0.7, -0.7])
@@ -113,10 +121,13 @@ def test_impact_with_friction_10_is_solved_by_every_law(impacts, solver, law, ki
 
 # Not e = 0 with e_t > 0: a contact that stays closed and may not slip stops whatever slip an impact has reversed; law
 # gap does it in the same step if v_n = 0 is missed by a rounding that presses.
-@pytest.mark.parametrize(("e", "e_t"), [(0.0, 0.0), (0.5, 0.0), (0.5, 0.5), (1.0, 0.5), (1.0, 1.0)])
-@BOTH_KINDS
-@EVERY_LAW
-@EVERY_SOLVER
+@every_two_meet(
+    {
+        "solver": SOLVERS,
+        "e, e_t": [both for both in BOTH_E if both != (0.0, 1.0)],
+        "law, kind": LAWS_AND_KINDS,
+    }
+)
 def test_impact_under_stick_never_slides(impacts, solver, law, kind, e, e_t):
     slip = np.array([0.0, 1e-6, 1.0, -1.0, 10.0])
     v_t, v_n, spin, _ = impacts(
@@ -147,11 +158,15 @@ def contact_velocity(normal, radius, v, omega):
     return points[0] - points[1]
 
 
-@pytest.mark.parametrize("friction", [0.05, 1.0])
-@pytest.mark.parametrize(("e", "e_t"), [(0.0, 0.0), (0.5, 0.0), (0.5, 1.0), (1.0, 0.5)])
-@BOTH_KINDS
-@EVERY_LAW
-@EVERY_SOLVER
+@every_two_meet(
+    {
+        "solver": SOLVERS,
+        "e, e_t, friction": [
+            (*both, mu) for both in [(0.0, 0.0), (0.5, 0.0), (0.5, 1.0), (1.0, 0.5)] for mu in (0.05, 1.0)
+        ],
+        "law, kind": LAWS_AND_KINDS,
+    }
+)
 def test_two_unequal_grains_exchange_the_impulse_of_coulomb_s_law(start, solver, law, kind, e, e_t, friction):
     balls, normal = pair(kind, law)
     options = SOLVED | {"friction": friction, "restitution": e, "e_t": e_t, "inertia": kind.inertia}

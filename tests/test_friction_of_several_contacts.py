@@ -11,7 +11,19 @@ import math
 
 import numpy as np
 import pytest
-from grain_kinds import BOTH_KINDS, DT, EVERY_LAW, EVERY_SOLVER, RADIUS, SOLVED, STEP_ERROR, TOUCH
+from grain_kinds import (
+    BOTH_KINDS,
+    DT,
+    EVERY_LAW,
+    EVERY_SOLVER,
+    LAWS_AND_KINDS,
+    RADIUS,
+    SOLVED,
+    SOLVERS,
+    STEP_ERROR,
+    TOUCH,
+)
+from parameters import every_two_meet
 from scenes import GRAVITY, grains, harden, per_atom, state
 
 import nscd_lmp
@@ -62,10 +74,7 @@ def braked_in_the_corner(kind, mu, steps):
     return -2.0 + kind.k * mu * GRAVITY * (1 + mu) / (1 + mu**2) * steps * DT
 
 
-@pytest.mark.parametrize("mu", [0.1, 0.5, 0.9])
-@BOTH_KINDS
-@EVERY_LAW
-@EVERY_SOLVER
+@every_two_meet({"solver": SOLVERS, "law, kind": LAWS_AND_KINDS, "mu": [0.1, 0.5, 0.9]})
 def test_grain_that_spins_in_a_corner_stays_there_and_slows_down(scene, solver, law, kind, mu):
     lmp, _, motion = scene(kind, law, [(0, RADIUS)], CORNER, spin=-2.0, solver=solver, friction=mu)
     lmp.command("run 40")
@@ -93,10 +102,13 @@ def test_corner_of_friction_1_is_solved_or_reported_and_damped_visits_solve_it(s
         np.testing.assert_allclose(v, 0, atol=100 * STEP_ERROR)
 
 
-@pytest.mark.parametrize(("mu", "stop"), [(0.3, 0.0), (0.3, 0.5), (0.6, 0.9), (0.3, 1.05), (0.3, "stick")])
-@BOTH_KINDS
-@EVERY_LAW
-@EVERY_SOLVER
+@every_two_meet(
+    {
+        "solver": SOLVERS,
+        "mu, stop": [(0.3, 0.0), (0.3, 0.5), (0.6, 0.9), (0.3, 1.05), (0.3, "stick")],
+        "law, kind": LAWS_AND_KINDS,
+    }
+)
 def test_roller_turns_a_grain_that_leans_on_a_stop_unless_the_stop_holds_it(scene, solver, law, kind, mu, stop):
     # The roller below drags with mu N, so that is what the stop carries; turning, the grain slides up the stop, which
     # pulls down by stop mu N: N = m g / (1 - stop mu), torque (1 - stop) mu N. From stop = 1 on it cannot turn.
@@ -141,10 +153,9 @@ def test_grain_in_the_groove_of_two_rollers_is_turned_up_to_their_speed(scene, l
         assert spin[0] == pytest.approx(expected, abs=(before + 50) * STEP_ERROR)
 
 
-@pytest.mark.parametrize(("mu", "drags"), [(0.2, True), (0.2, False), ("stick", False)])
-@BOTH_KINDS
-@EVERY_LAW
-@EVERY_SOLVER
+@every_two_meet(
+    {"solver": SOLVERS, "law, kind": LAWS_AND_KINDS, "mu, drags": [(0.2, True), (0.2, False), ("stick", False)]}
+)
 def test_moving_obstacle_drags_the_grain_on_it_along(scene, solver, law, kind, mu, drags):
     # one step: mu g dt if the belt is faster than kappa times that, else until nothing slips. It is below the grain
     # where the contact is sought: at the start of the step, under law moreau halfway.
@@ -162,10 +173,13 @@ def test_moving_obstacle_drags_the_grain_on_it_along(scene, solver, law, kind, m
     assert spin[0] == pytest.approx(-kind.k * push, abs=STEP_ERROR)
 
 
-@pytest.mark.parametrize(("pairs", "ground"), [(1.02, 1.02), (0.98, 1.02), (1.02, 0.98), ("stick", "stick")])
-@BOTH_KINDS
-@EVERY_LAW
-@EVERY_SOLVER
+@every_two_meet(
+    {
+        "solver": SOLVERS,
+        "law, kind": LAWS_AND_KINDS,
+        "pairs, ground": [(1.02, 1.02), (0.98, 1.02), (1.02, 0.98), ("stick", "stick")],
+    }
+)
 def test_grain_on_two_stands_iff_both_coefficients_reach_the_angle_of_the_pile(scene, solver, law, kind, pairs, ground):
     # Contacts between grains at `angle` from the vertical: both forces on a lower grain but its weight go through its
     # contact with the ground, so friction between grains needs tan(angle / 2); the ground carries 3/2 weights where

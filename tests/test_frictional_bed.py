@@ -49,12 +49,17 @@ def references():
     return {}
 
 
-@pytest.mark.parametrize(
-    ("scene", "e", "e_t"),
-    [("rest", 0.0, 0.0), ("box", 0.0, 0.0), ("box", 0.5, 0.3), ("heap", 0.0, 0.0), ("heap", 0.5, 0.3)],
-)
-@EVERY_DIMENSION
-@EVERY_LAW
+# Every law in each dimension has every scene, and one of the two that move inelastic, the other with restitution: a
+# reference takes seconds.
+PROBLEMS = [
+    (law, dim, scene, *((0.5, 0.3) if scene == ("box", "heap")[(k + dim) % 2] else (0.0, 0.0)))
+    for k, law in enumerate(LAWS)
+    for dim in (2, 3)
+    for scene in ("rest", "box", "heap")
+]
+
+
+@pytest.mark.parametrize(("law", "dim", "scene", "e", "e_t"), PROBLEMS)
 @EVERY_SOLVER
 def test_velocities_of_a_shaken_bed_are_those_of_the_reference(
     start, beds, references, solver, law, dim, scene, e, e_t
@@ -136,7 +141,7 @@ def turned(balls, angle):
     return Grains(balls.x @ matrix, balls.radius, balls.mass, balls.v @ matrix, balls.omega @ matrix), matrix
 
 
-@pytest.mark.parametrize("angle", [0.3, 1.2, np.pi / 4, 2.5])
+@pytest.mark.parametrize("angle", [np.pi / 4, 2.5])
 @EVERY_SOLVER
 def test_turned_bed_moves_turned(start, beds, solver, angle):
     bed = shaken(beds[3], 0.1, 3)

@@ -33,6 +33,7 @@ MPI_ON_ONE_HOST = {"UCX_TLS": "self,sysv", "UCX_SYSV_BW": "10000MBs", "MPIR_CVAR
 # turn it.
 TOLERANCES = {"bed": 2e-7, "moreau": 2e-7, "column": 1e-9, "impacts": 1e-9, "friction": 5e-5, "shear": 5e-5}
 NEWTON = ("bed",)
+NUMBERS = (2, 3, 4)  # of ranks
 
 Answers = Callable[[int, str], Any]
 
@@ -63,14 +64,19 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> Answers:
     return ask
 
 
-def cases() -> list[str]:
-    """Return the names of all cases that are compared with one rank."""
-    plain = [f"{scene}_{door}" for scene in TOLERANCES for door in DOORS if scene not in NEWTON]
-    return plain + [f"bed_{door}_{newton}" for door in DOORS for newton in ("on", "off")]
+def cases() -> list[tuple[str, int]]:
+    """Return the names of all cases that are compared with one rank, and on how many ranks.
+
+    The bed is run through both doors on each number of ranks; in the other scenes the doors take turns.
+    """
+    beds = [(f"bed_{door}_{newton}", n) for door in DOORS for newton in ("on", "off") for n in NUMBERS]
+    others = [scene for scene in TOLERANCES if scene not in NEWTON]
+    return beds + [
+        (f"{scene}_{DOORS[(k + turn) % 2]}", n) for k, scene in enumerate(others) for turn, n in enumerate(NUMBERS)
+    ]
 
 
-@pytest.mark.parametrize("ranks", [2, 3, 4])
-@pytest.mark.parametrize("case", cases())
+@pytest.mark.parametrize(("case", "ranks"), cases())
 def test_any_number_of_ranks_gives_the_velocities_of_one(answers: Answers, case: str, ranks: int) -> None:
     one, several = answers(1, case), answers(ranks, case)
     assert np.abs(one["v"]).max() > 0

@@ -33,8 +33,8 @@ def squeezed(start: Any, seed: int) -> tuple[Any, int, list[Any]]:
     return lmp, n, box_walls(width)
 
 
-@BOTH
-@pytest.mark.parametrize("seed", [1, 2, 3, 7])
+# A scene is as hard through either door: they take turns.
+@pytest.mark.parametrize(("seed", "door"), [(1, "python"), (2, "script"), (3, "python"), (7, "script")])
 def test_layer_that_a_lid_squeezes_is_not_thrown(start, door, seed):
     # grains were as fast as 57,000 m/s in steps that were called solved, 163 m/s over some that were given up
     lmp, n, walls = squeezed(start, seed)

@@ -8,6 +8,7 @@ test_one_contact.py).
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -55,5 +56,9 @@ class Kind:
 KINDS = [Kind("sphere", False, None, 2.5), Kind("disc", True, None, 2.0), Kind("flat sphere", True, "sphere", 2.5)]
 EVERY_KIND = pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name.replace(" ", "-"))
 BOTH_KINDS = pytest.mark.parametrize("kind", KINDS[:2], ids=lambda kind: kind.name)
-EVERY_LAW = pytest.mark.parametrize("law", list(nscd_lmp.LAWS))
-EVERY_SOLVER = pytest.mark.parametrize("solver", list(nscd_lmp.FRICTIONAL_SOLVERS))
+LAWS, SOLVERS = list(nscd_lmp.LAWS), list(nscd_lmp.FRICTIONAL_SOLVERS)
+EVERY_LAW = pytest.mark.parametrize("law", LAWS)
+EVERY_SOLVER = pytest.mark.parametrize("solver", SOLVERS)
+# For every_two_meet: a law and a kind, which is a dimension, are one axis, so solvers meet both together.
+LAWS_AND_KINDS = list(itertools.product(LAWS, KINDS[:2]))
+LAWS_AND_ALL_KINDS = list(itertools.product(LAWS, KINDS))
