@@ -230,19 +230,6 @@ def test_grain_beyond_a_wall_stops_the_step(start, door, law):
 
 
 @BOTH
-@pytest.mark.parametrize("law", nscd_lmp.LAWS)
-def test_speed_beyond_the_neighbor_list_stops_the_step(start, door, law):
-    # 20 m/s for 1e-2 s is 20 radii; the list reaches 2 dt vmax and the skin of half a radius
-    balls = two_balls(gap=0.08)
-    balls.v[1] = (0, 0, -20)
-    lmp = start(balls, 1e-2, vmax=0.1)
-    harden(lmp, door, law=law)
-    with pytest.raises(refusal(door), match=r"could be missed.*by 0\.[12] .*raise the cutoff.*smaller timestep"):
-        lmp.command("run 2")
-    assert state(lmp)[0].tolist() == balls.x.tolist()
-
-
-@BOTH
 def test_pair_cutoff_below_the_diameter_is_refused(start, door):
     balls = two_balls(gap=-1e-4)
     lmp = start(balls, 1e-4, gravity=GRAVITY)

@@ -134,7 +134,7 @@ def test_bad_input_is_refused(debian: Run, tmp_path: Path, door: str) -> None:
         "group": "unknown group 'nobody': choose one of all",
         "door": "unknown door 'window': choose one of external, invoke",
         "integrator": "moved by fix other (style nve/sphere) too",
-        "reach": "contacts could be missed",
+        "reach": "less than the largest diameter",
         "pair style": "no pair style is defined",
     }
     assert answer.keys() == expected.keys()

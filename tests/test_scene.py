@@ -76,9 +76,9 @@ def test_lists_reach_as_far_as_grains_fall_in_a_step(scene: Make) -> None:
     lmp.command("run 100")
     assert hard.stats["largest_overlap_ratio"].max() < 1e-9
     short = scene(gravity=GRAVITY, walls=[FLOOR], speed=0.0)
-    nscd_lmp.attach(short)
-    with pytest.raises(nscd_lmp.NscdError, match="contacts could be missed"):
-        short.command("run 100")
+    found = nscd_lmp.attach(short)
+    short.command("run 100")
+    assert found.stats["largest_overlap_ratio"].max() < 1e-9
 
 
 @pytest.mark.parametrize("speed", [1.0, 30.0])

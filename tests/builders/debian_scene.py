@@ -177,7 +177,7 @@ def refusals(door: str, folder: Path) -> dict[str, Any]:
     lmp.command("fix other all nve/sphere")
     refuse("integrator", lambda: lmp.command("run 1"))
     lmp.command("unfix other")
-    lmp.commands_list([f"pair_style zero {LARGEST!r}", "pair_coeff * *", f"neighbor {LARGEST / 10!r} bin"])
+    lmp.commands_list([f"pair_style zero {LARGEST / 2!r}", "pair_coeff * *", f"neighbor {LARGEST / 10!r} bin"])
     refuse("reach", lambda: lmp.command("run 10"))
     attached.detach()
     lmp.command("pair_style none")

@@ -112,6 +112,12 @@ NSCD_HOT std::optional<Candidate> sort_pairs(State &s, const PairList &pairs)
   return narrow;
 }
 
+// Each of them is one rank's, once, and of two bodies.
+void take_unlisted(State &s)
+{
+  s.search.touching.insert(s.search.touching.end(), s.search.unlisted.begin(), s.search.unlisted.end());
+}
+
 // Those of the contacts-to-be that are not foreseen are watched instead.
 NSCD_HOT void watch_unforeseen(State &s)
 {
@@ -321,6 +327,7 @@ void detect(State &state, const PairList &pairs, Sought sought)
 {
   filter_pairs(state, pairs);
   if (const auto narrow = sort_pairs(state, pairs)) refuse_narrow_box(state, *narrow);
+  take_unlisted(state);
   state.search.unforeseen = 0;
   if (sought == Sought::foreseen) watch_unforeseen(state);
   for (int wall = 0; wall < state.obstacles.count(); ++wall) sort_wall(state, wall);

@@ -10,8 +10,8 @@ namespace nscd {
 // ones that free motion brings together and the closest of the rest.
 enum class Sought { within_reach, foreseen };
 
-// Fills contacts and infos of state.table. Impulses and biases are left 0. Other candidates within search.watch go to
-// search.near. Raises Error for an overlap beyond the smaller radius.
+// Fills contacts and infos of state.table, from the list and search.unlisted. Impulses and biases are left 0. Other
+// candidates within search.watch go to search.near. Raises Error for an overlap beyond the smaller radius.
 void detect(State &state, const PairList &pairs, Sought sought);
 
 // Watched candidates that the solution drives into each other, by state.motion.displacement or by dt times the bodies'

@@ -96,6 +96,7 @@ struct Motion {
 struct PairSearch {
   std::vector<Candidate> found{};        // listed pairs that are near enough to watch, the first found_count
   std::size_t found_count = 0;
+  std::vector<Candidate> unlisted{};     // pairs that the list lacks, and that free motion brings together
   std::vector<Candidate> touching{};     // contacts-to-be, in list order, or by part where threads share them
   std::vector<Candidate> ordered{};      // scratch
   std::vector<Watched> near{};           // by law gap: made contacts if the solution drives them together

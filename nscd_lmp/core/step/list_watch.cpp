@@ -91,25 +91,25 @@ void ListWatch::refuse_drifting(double ahead) const
        ", or use a smaller timestep");
 }
 
-void ListWatch::require(const PairList &pairs, double listed, double moved, double speed)
+double ListWatch::complete(const PairList &pairs, double listed, double moved, double speed)
 {
   listed_ = listed, moved_ = moved;
   unlisted_.clear();
+  state_.search.unlisted.clear();
   missed_.begin(pairs, listed_);
   const double ahead = longest_move(speed);
   if (listed_ < 0)
     fail("contacts could be missed: pair cutoff plus neighbor skin are ", -listed_, " less than the largest diameter: ",
          "raise the cutoff of the pair style to ", rounded_up(2 * (largest_radius(state_) + ahead)), ", that diameter ",
          "and 2 dt v of the fastest grain");
-  if (Reach{listed_, moved_, ahead}.is_enough()) return;
+  if (Reach{listed_, moved_, ahead}.is_enough()) return 0;
   refuse_drifting(ahead);
   free_motion(missed_.motion(), state_, prediction_, look_ahead_);
-  if (!missed_.find(state_, 0)) return;
-  const double cutoff = cutoff_to_type(state_, missed_);
-  together(state_.exec.halo, [&] {
-    if (!missed_.pairs().empty()) refuse_missed(cutoff);
-    refuse_unless_all_known();
-  });
+  if (!missed_.find(state_, 0)) return 0;
+  const double cutoff = refuse_unwatchable();
+  for (const Missed &m : missed_.pairs())
+    if (is_first(m.pair)) state_.search.unlisted.push_back(m.pair);
+  return cutoff;
 }
 
 // Where contacts are not sought ahead they can only overlap: that is reported, and no reason to refuse the step.
@@ -125,17 +125,21 @@ void ListWatch::watch_unlisted()
   if (for_contacts) refuse_unwatchable();
   if (missed_.excludes()) return;
   for (const Missed &m : missed_.pairs())
-    if (unlisted_.insert({m.pair.atom_i, m.pair.atom_j}).second) state_.search.near.push_back({m.pair, m.gap});
+    if (is_first(m.pair)) state_.search.near.push_back({m.pair, m.gap});
 }
 
-// Pairs that cannot be watched, since they may be excluded ones, or an image is not here.
-void ListWatch::refuse_unwatchable()
+bool ListWatch::is_first(const Candidate &pair) { return unlisted_.insert({pair.atom_i, pair.atom_j}).second; }
+
+// Pairs that cannot be taken in, since they may be excluded ones, or an image is not here. Returns the cutoff that has
+// them all.
+double ListWatch::refuse_unwatchable()
 {
   const double cutoff = cutoff_to_type(state_, missed_);
   together(state_.exec.halo, [&] {
     refuse_unless_all_known();
     if (missed_.excludes() && !missed_.pairs().empty()) refuse_missed(cutoff);
   });
+  return cutoff;
 }
 
 // Forces can change by as much as they do to velocities in a step.

@@ -21,9 +21,11 @@ class ListWatch {
   {
   }
 
-  // Ahead of the solve: raises Error if pairs that the list lacks meet unless contacts change something. `listed` and
-  // `moved` as Reach has them; `speed` of the fastest grain, m/s. Collective.
-  void require(const PairList &pairs, double listed, double moved, double speed);
+  // Ahead of the search for contacts: pairs that the list lacks, and that meet unless contacts change something, go to
+  // search.unlisted. Returns the cutoff with which the list would have had them, m, or 0 if it has all. `listed` and
+  // `moved` as Reach has them; `speed` of the fastest grain, m/s. Raises Error for a list that lacks pairs that touch,
+  // and where there may be pairs that cannot be known. Collective.
+  double complete(const PairList &pairs, double listed, double moved, double speed);
 
   // After a solve: pairs that its impulses drive together from farther apart than the list has them are watched too.
   // Raises Error where they cannot be. Collective.
@@ -38,14 +40,15 @@ class ListWatch {
   [[noreturn]] void refuse_missed(double cutoff) const;
   void refuse_unless_all_known() const;
   void refuse_drifting(double ahead) const;
-  void refuse_unwatchable();
+  double refuse_unwatchable();
+  bool is_first(const Candidate &pair);
 
   State &state_;
   const ListGuard &list_;
   const Drifts &drifts_;
   const double prediction_, look_ahead_;
   MissedPairs missed_;
-  std::set<std::pair<int, int>> unlisted_;   // pairs that were found beyond the list after a solve of this step
+  std::set<std::pair<int, int>> unlisted_;   // pairs that were found beyond the list in this step
   double listed_ = 0, moved_ = 0;            // as Reach has them
 };
 

@@ -20,6 +20,8 @@ constexpr double move_worth_saying = 2;
 // has to last: grains that land pass each other by more for a while.
 constexpr double passing_worth_saying = 0.018;
 constexpr long steps_of_a_flow = 100;
+// A look at all grains costs about as much as a new list; now and then it is nothing to change a script for.
+constexpr long short_lists_worth_saying = 100;
 
 template <class... Parts>
 std::string sentence(const Parts &...parts)
@@ -75,6 +77,8 @@ void Remarks::add(const StepReport &r, Stop stop)
   impacts_left_ += r.impacts_left;
   overlap_ratio_ = std::max(overlap_ratio_, r.largest_overlap_ratio);
   move_ratio_ = std::max(move_ratio_, r.largest_move_ratio);
+  short_lists_ += r.cutoff_to_list > 0;
+  cutoff_to_list_ = std::max(cutoff_to_list_, r.cutoff_to_list);
   if (r.passed2 > passing_worth_saying * passing_worth_saying * r.pushed) {
     ++passing_;
     pushed_ += r.pushed;
@@ -104,6 +108,10 @@ std::vector<std::string> Remarks::take(const Settings &s, bool looks_ahead)
   if (!looks_ahead && move_ratio_ > move_worth_saying)
     said.push_back(sentence("grains move by up to ", rounded(move_ratio_), " of the smallest radius in a step, and ",
                             "law ", s.law, " does not see them pass each other: use law gap or a smaller timestep"));
+  if (short_lists_ > std::max(short_lists_worth_saying, steps_ / 10))
+    said.push_back(sentence("in ", short_lists_, " of ", steps_, " steps the neighbor list lacked pairs that meet, ",
+                            "and all grains were looked at to find them, which takes time: raise the cutoff of the pair ",
+                            "style, to ", rounded(cutoff_to_list_), " at most, or build the list more often"));
   if (looks_ahead && !s.restitutive() && passing_ > std::max(steps_of_a_flow, steps_ / 2))
     said.push_back(told_passing(passing_, steps_, std::sqrt(passed2_ / pushed_)));
   if (torque_)

@@ -37,6 +37,8 @@ class Remarks {
   long impacts_left_ = 0;
   double overlap_ratio_ = 0;    // the largest
   double move_ratio_ = 0;       // the largest
+  long short_lists_ = 0;        // steps whose neighbor list lacked pairs
+  double cutoff_to_list_ = 0;   // m, the largest
   long passing_ = 0;            // steps with more than passing_worth_saying
   double pushed_ = 0, passed2_ = 0;   // in these, as a step reports them
   bool torque_ = false;

@@ -108,8 +108,8 @@ Step::Seen Step::prepare(const PairList &pairs)
   drifts_.place(state_, state_.in.dt * prediction_, look_ahead_);
   const double speed = std::sqrt(speed2) + state_.drift.fastest;
   state_.scales.round_off = 1e-14 * speed;
-  watch_.require(pairs, -unlisted, moved + 0.5 * drifts_.neared(), speed);
-  return {torque > 0, state_.in.dt * speed / -smallest};
+  const double cutoff = watch_.complete(pairs, -unlisted, moved + 0.5 * drifts_.neared(), speed);
+  return {torque > 0, state_.in.dt * speed / -smallest, cutoff};
 }
 
 void Step::count(const Solves::Outcome &solved)

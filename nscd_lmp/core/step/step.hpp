@@ -31,6 +31,7 @@ struct StepReport {
   double largest_overlap = 0;        // m, at q_{k+1}
   double largest_overlap_ratio = 0;  // over the smaller radius of the pair
   double largest_move_ratio = 0;     // dt times the fastest grain's speed at the start, over the smallest radius
+  double cutoff_to_list = 0;         // m, of a list that has all pairs that meet; 0: it had them
   double pushed = 0;                 // N s, sum of the normal impulses between grains, in boxes that stand still
   double passed2 = 0;                // N s, weighed by them: by how much of a diameter pairs pass each other, squared
   double dissipated_in_step = 0;     // J, by contacts
@@ -99,6 +100,7 @@ class Step {
   struct Seen {
     bool unread_torque;
     double move_ratio;
+    double cutoff_to_list;     // m
   };
   // What contacts have done in a step, over all ranks.
   struct Tally {

@@ -113,6 +113,7 @@ void Step::write_report(const Seen &seen, const Rounds::Result &rounds, const Ta
              .largest_overlap = tally.largest.length,
              .largest_overlap_ratio = tally.largest.ratio,
              .largest_move_ratio = seen.move_ratio,
+             .cutoff_to_list = seen.cutoff_to_list,
              .pushed = tally.pushed,
              .passed2 = tally.passed2,
              .dissipated_in_step = tally.dissipated,
