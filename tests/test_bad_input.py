@@ -89,12 +89,12 @@ def test_keyword_that_does_not_exist_is_refused(start):
         ("friction 0.5 stick", "keyword stick is a friction, which is given twice"),
         (
             "wall plane 0 0 0 0 0 1 e_t 0.5 friction 0.1 e_t 0.5",
-            "the wall has its e_t already, .* give that before walls",
+            "keyword e_t here would be the e_t of all contacts .* give that before walls",
         ),
-        ("material 1 1", "behind the two types stand friction, restitution or e_t"),
+        ("material 1 1", "material 1 1: behind the two types stand friction, restitution or e_t"),
         ("material 1 2 friction 0.5", "there is no atom type 2, the largest is 1"),
         ("material 0 1 friction 0.5", "'0' names no types of atoms: give a number from 1, or a range as 2\\*4"),
-        ("wall plane 0 0 0 0 0 1 friction 0.5 stick", "the wall has its friction already"),
+        ("wall plane 0 0 0 0 0 1 friction 0.5 stick", "keyword stick here would be the friction of all contacts"),
         ("law gap paper yes", "paper behind law would override it: give paper first"),
     ],
 )
@@ -105,7 +105,7 @@ def test_keyword_without_its_values_or_in_a_wrong_place_is_refused(start, words,
 
 
 def test_plane_of_two_numbers_is_refused():
-    with pytest.raises(ValueError, match=r"normal = \(0, 1\) must be three numbers"):
+    with pytest.raises(nscd_lmp.NscdError, match=r"normal = \(0, 1\) must be three numbers"):
         nscd_lmp.Plane((0, 0, 0), (0, 1))
 
 

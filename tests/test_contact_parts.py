@@ -31,7 +31,7 @@ class Answer:
     solver: str
     door: str
     converged: bool
-    impulses: Array  # (n, 7), p_n, p_t and p_r in space
+    impulses: Array  # (n, 8), p_n, p_t and p_r in space, and p_w
 
 
 Solve = Callable[[Assembly], list[Answer]]
@@ -49,7 +49,7 @@ def solve(build_folder: Callable[[str], Path]) -> Solve:
         answers = []
         for line in done.stdout.splitlines():
             solver, door, converged, _, _, *numbers = line.split()
-            impulses = np.array([float.fromhex(x) for x in numbers]).reshape(-1, 7)
+            impulses = np.array([float.fromhex(x) for x in numbers]).reshape(-1, 8)
             answers.append(Answer(solver, door, converged == "1", impulses))
         return answers
 
@@ -98,8 +98,15 @@ def test_spheres_are_rigid_bodies_of_their_inertia(solve: Solve) -> None:
 def test_the_judge_sees_a_rolling_moment_that_is_too_small(solve: Solve) -> None:
     assembly = random_assembly("rolling_spheres", 1)
     impulses = solve(assembly)[0].impulses.copy()
-    k = int(np.linalg.norm(impulses[:, 4:], axis=1).argmax())
-    impulses[k, 4:] *= 0.99
+    k = int(np.linalg.norm(impulses[:, 4:7], axis=1).argmax())
+    impulses[k, 4:7] *= 0.99
+    assert error(assembly, impulses) > 1e-4
+
+
+def test_the_judge_sees_a_twisting_moment_that_is_too_small(solve: Solve) -> None:
+    assembly = random_assembly("twisting_spheres", 1)
+    impulses = solve(assembly)[0].impulses.copy()
+    impulses[np.abs(impulses[:, 7]).argmax(), 7] *= 0.99
     assert error(assembly, impulses) > 1e-4
 
 
@@ -109,7 +116,7 @@ def test_parts_have_something_to_do(solve: Solve) -> None:
     for seed in SEEDS:
         assembly = random_assembly("rolling_spheres", seed)
         p = solve(assembly)[0].impulses
-        moment, bound = np.linalg.norm(p[:, 4:], axis=1), assembly.mu_r * p[:, 0]
+        moment, bound = np.linalg.norm(p[:, 4:7], axis=1), assembly.mu_r * p[:, 0]
         rolls += int(((moment > 0.999 * bound) & (bound > 0)).sum())
         sticks += int(((moment < 0.99 * bound) & (bound > 0)).sum())
         opens += int((p[:, 0] == 0).sum())

@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
         ({"solver": "pdas", "rho": 1.0}, r"rho is not a parameter of solver pdas, which takes gamma"),
         ({"solver": "pdas", "gamma": 0.0}, r"gamma = 0.0 must be > 0"),
         ({"tol": 0.0}, r"tol = 0.0 must be > 0"),
+        ({"tol": 0.2}, r"tol = 0.2 must be <= 0.1 with criterion natural"),
         ({"maxiter": 0}, r"maxiter = 0 must be at least 1"),
         ({"criterion": "energy"}, r"unknown criterion 'energy': choose one of natural, paper"),
         ({"unconverged": "stop"}, r"unknown unconverged 'stop': choose one of warn, ignore, error"),
@@ -33,6 +34,20 @@ Array = NDArray[np.float64]
 def test_solve_refuses(words: dict[str, Any], message: str) -> None:
     with pytest.raises(NscdError, match=message):
         solve(ContactProblem(np.eye(20), np.ones(20)), **words)
+
+
+@pytest.mark.parametrize("speed", [1e155, 1e-165])
+def test_velocities_whose_squares_are_no_numbers_are_refused(speed: float) -> None:
+    """Their norm would be infinity or 0, and any residual over it as good as none."""
+    with pytest.raises(NscdError, match=r"the largest of q is 1e[-+]1\d5 m/s: it must be between 1e-130 and 1e\+130"):
+        ContactProblem([[2, 1], [1, 2]], [-speed, -speed])
+
+
+@pytest.mark.parametrize("speed", [1e120, 1e-120, 0.0])
+@pytest.mark.parametrize("solver", ["auto", "pdas", "active_set"])
+def test_velocities_of_any_other_size_are_solved(speed: float, solver: str) -> None:
+    found = solve(ContactProblem([[2, 1], [1, 2]], [-speed, -speed]), solver, tol=1e-10)
+    np.testing.assert_allclose(found.impulse, [speed / 3, speed / 3], rtol=1e-9)
 
 
 @pytest.mark.parametrize("dim", [2, 3])

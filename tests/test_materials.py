@@ -81,6 +81,8 @@ def test_a_grain_bounces_off_one_wall_and_stays_on_the_other(law: str) -> None:
         ({(1, 1): nscd_lmp.Material(restitution=1.5)}, r"material 1 1: restitution = 1\.5 is outside \[0, 1\]"),
         ({(1, 1): nscd_lmp.Material(friction="glue")}, r"material friction: 'glue' is not a number, nor stick"),  # type: ignore[arg-type]
         ({(1, 1): 0.5}, r"materials: \(1, 1\): 0\.5 must be \(i, j\): nscd_lmp\.Material"),
+        ({(1, 1): nscd_lmp.Material(friction=[0.1])}, r"friction = \[0\.1\] must be a number"),  # type: ignore[arg-type]
+        ([nscd_lmp.Material(friction=0.1)], r"materials = \[.*\] must be a dict"),
         ({1: nscd_lmp.Material(friction=0.1)}, r"must be \(i, j\): nscd_lmp\.Material"),
     ],
 )
@@ -99,3 +101,22 @@ def test_python_has_all_parts_of_a_material() -> None:
     parts = list(_core.MATERIAL_PARTS)
     assert [field.name for field in dataclasses.fields(nscd_lmp.Material)] == parts
     assert [field.name for field in dataclasses.fields(nscd_lmp.Plane)] == ["point", "normal", *parts]
+
+
+@pytest.mark.fast
+def test_a_wall_without_what_types_have_is_told(tmp_path: Path) -> None:
+    """Both doors say so; a wall that says 0 is taken at its word."""
+    materials = {(1, 1): nscd_lmp.Material(friction=0.5)}
+    lmp = start(grains([(0, 0, 0.01)], 0.01), 1e-4)
+    with pytest.warns(UserWarning, match="wall 1 has no friction, which grains have by their types alone"):
+        nscd_lmp.attach(lmp, materials=materials, walls=[FLOOR])
+    lmp = start(grains([(0, 0, 0.01)], 0.01), 1e-4)
+    nscd_lmp.attach(lmp, materials=materials, walls=[dataclasses.replace(FLOOR, friction=0.0)])
+
+
+@pytest.mark.fast
+@pytest.mark.parametrize("walls", [FLOOR, ["plane"], 0])
+def test_walls_that_are_none_are_refused(walls: object) -> None:
+    lmp = start(grains([(0, 0, 0.01)], 0.01), 1e-4)
+    with pytest.raises(nscd_lmp.NscdError, match=r"walls = .* must be a list of walls"):
+        nscd_lmp.attach(lmp, walls=walls)  # type: ignore[arg-type]

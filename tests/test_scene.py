@@ -92,6 +92,21 @@ def test_lists_reach_as_far_as_grains_fly_in_a_step(scene: Make, speed: float) -
     assert hard.stats["contacts"].max() > 0
 
 
+class Ground:
+    """A kind of wall that the package has no class for."""
+
+    def keywords(self) -> list[str]:
+        return ["wall", "plane", "0", "0", "0", "0", "0", "1"]
+
+
+@pytest.mark.overlaps_not_asked("who asks knows planes alone")
+def test_scenes_take_any_kind_of_wall(scene: Make) -> None:
+    lmp = scene(gravity=GRAVITY, walls=[Ground()])
+    nscd_lmp.attach(lmp)
+    lmp.command("run 200")
+    assert per_atom(lmp, "x")[:, 2].min() > 0.05 - 1e-6
+
+
 def test_walls_are_those_of_the_scene_unless_others_are_given(scene: Make) -> None:
     ends = []
     for given, options in (([FLOOR], {}), ([], {"walls": [FLOOR]}), ([FLOOR], {"walls": []})):

@@ -25,6 +25,9 @@ PLACES = [(0, 0, 0.05), (0.001, 0, 1.0), (0, 0.001, 1.2)]  # m
         ({"x": np.zeros((0, 3))}, "x has no row: a scene needs a grain at least"),
         ({"x": np.zeros((3, 2))}, r"x has the shape \(3, 2\): it must be \(n, 3\)"),
         ({"radius": [1, 2]}, r"radius has the shape \(2,\) for 3 grains: it must be \(3,\), or a number"),
+        ({"v": 1.0}, r"v = 1\.0 must be three numbers, or a row for each grain"),
+        ({"gravity": -9.81}, r"gravity = -9\.81: a number points downwards, 9\.81 here; \(0, 0, g\) is upwards"),
+        ({"setup": "processors * * 1"}, r"setup = 'processors \* \* 1' must be a list of LAMMPS commands"),
         ({"v": [1, 2]}, r"v has the shape \(2,\) for 3 grains: it must be \(3, 3\), or 3 numbers"),
         ({"omega": np.zeros((2, 3))}, r"omega has the shape \(2, 3\) for 3 grains"),
         ({"density": [1.0, 2.0]}, r"density has the shape \(2,\) for 3 grains"),
@@ -56,8 +59,8 @@ PLACES = [(0, 0, 0.05), (0.001, 0, 1.0), (0, 0.001, 1.2)]  # m
         ({"speed": -1}, "speed = -1 m/s must be a finite number, 0 or more"),
         ({"skin": 0}, "skin = 0 m must be a finite number above 0"),
         ({"type": 0}, "type = 0 must be of whole numbers from 1"),
-        ({"walls": FLOOR}, r"walls = Plane\(.*\) must be a list of nscd_lmp\.Plane"),
-        ({"walls": [3]}, r"walls = \[3\] must be a list of nscd_lmp\.Plane"),
+        ({"walls": FLOOR}, r"walls = Plane\(.*\) must be a list of walls"),
+        ({"walls": [3]}, r"walls = \[3\] must be a list of walls"),
     ],
 )
 def test_scene_that_cannot_be_is_refused_and_leaves_no_instance(

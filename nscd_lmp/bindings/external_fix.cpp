@@ -187,8 +187,11 @@ std::vector<std::string> ExternalFix::doubts() const
   g.type = library_.per_atom<int>("type");
   g.group = group_bit_;
   const bool spheres = setting("radius_flag") == 1 && setting("rmass_flag") == 1 && setting("tagint") == 4;
-  if (timestep() != 0 || !spheres) return {};
-  return nscd::doubts(g, library_.get_natoms(library_.handle), ranks_.get());
+  std::vector<std::string> said = nscd::doubts(step_.settings());
+  if (timestep() != 0 || !spheres) return said;
+  for (const std::string &doubt : nscd::doubts(g, library_.get_natoms(library_.handle), ranks_.get()))
+    said.push_back(doubt);
+  return said;
 }
 
 // Its rate is not told.

@@ -18,7 +18,7 @@ from nscd_lmp.door.contact_system import ContactSystem
 from nscd_lmp.door.door import Door
 from nscd_lmp.door.materials import Material, material_words
 from nscd_lmp.door.scene import walls_of
-from nscd_lmp.door.walls import Plane
+from nscd_lmp.door.walls import Plane, check_walls
 
 PythonSolver = Callable[[ContactSystem], NDArray[np.float64]]
 
@@ -146,8 +146,10 @@ def attach(
     custom = None
     if callable(solver):
         custom = _with_contact_system(solver)
-    keywords += material_words(materials or {})
-    for wall in walls_of(lmp) if walls is None else walls:
+    keywords += material_words({} if materials is None else materials)
+    walls = walls_of(lmp) if walls is None else walls
+    check_walls(walls)
+    for wall in walls:
         keywords += wall.keywords()
     return Door(lmp, group, keywords, custom, door).attached
 

@@ -24,7 +24,8 @@ class Material:
     e_t : float, optional
         Tangential restitution, 0 to 1; with friction only.
 
-    None is what all contacts without their own have: `friction`, `restitution`, `e_t` of :func:`nscd_lmp.attach`.
+    None is what all contacts without their own have: `friction`, `restitution`, `e_t` of :func:`nscd_lmp.attach`. Where
+    several name a pair, the last one that gives a number holds, number by number.
     """
 
     friction: Friction | None = None
@@ -38,13 +39,23 @@ def own_words(of: Any) -> list[str]:
     for part in _core.MATERIAL_PARTS:
         value = getattr(of, part)
         if value is not None:
-            words += [part, value if isinstance(value, str) else repr(float(value))]
+            words += [part, _word(part, value)]
     return words
+
+
+def _word(part: str, value: Any) -> str:
+    """Return a number as ``fix nscd`` reads it; words, as ``"stick"``, are the core's to judge."""
+    try:
+        return value if isinstance(value, str) else repr(float(value))
+    except TypeError:
+        raise NscdError(f"{part} = {value!r} must be a number") from None
 
 
 def material_words(materials: Mapping[tuple[int, int], Material]) -> list[str]:
     """Return the words of ``fix nscd`` for materials by pair of atom types."""
     words: list[str] = []
+    if not isinstance(materials, Mapping):
+        raise NscdError(f"materials = {materials!r} must be a dict, {{(i, j): nscd_lmp.Material(...)}}")
     for pair, material in materials.items():
         if not (isinstance(pair, tuple) and len(pair) == 2 and isinstance(material, Material)):
             raise NscdError(

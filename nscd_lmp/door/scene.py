@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from nscd_lmp._core import NscdError
 from nscd_lmp.door.create import check_numbers, create_grains, grain_types, per_grain_rows
-from nscd_lmp.door.walls import Plane
+from nscd_lmp.door.walls import Plane, check_walls
 
 Array = NDArray[np.float64]
 
@@ -100,8 +100,9 @@ def scene(
         Shapes that do not match; numbers that are not finite; radii, masses or `dt` that are not above 0; grains
         outside the box, a box without room, periodic axes without a box. No instance is left then.
     """
-    if isinstance(walls, Plane) or not all(isinstance(wall, Plane) for wall in walls):
-        raise NscdError(f"walls = {walls!r} must be a list of nscd_lmp.Plane")
+    check_walls(walls)
+    if isinstance(setup, str):
+        raise NscdError(f"setup = {setup!r} must be a list of LAMMPS commands: [{setup!r}]")
     planar = _is_planar(dimension)
     places = _vectors("x", x, planar)
     n = len(places)
@@ -192,6 +193,8 @@ def _is_planar(dimension: int) -> bool:
 def _vectors(name: str, given: ArrayLike, planar: bool, n: int | None = None) -> Array:
     """Return the rows of x or v in space; `n` rows, or as many as there are."""
     rows = np.array(given, dtype=float)
+    if rows.ndim == 0 and rows:
+        raise NscdError(f"{name} = {given!r} must be three numbers, or a row for each grain")
     if n is None or rows.ndim == 2:
         if rows.ndim != 2 or rows.shape[1] not in ((2, 3) if planar else (3,)):
             width = "(n, 2) or (n, 3)" if planar else "(n, 3)"
@@ -212,6 +215,9 @@ def _pull(gravity: ArrayLike, planar: bool) -> Array:
     given = np.array(gravity, dtype=float)
     if given.shape not in ((), (3,)) or not np.isfinite(given).all():
         raise NscdError(f"gravity = {gravity!r} must be a finite number, downwards, or three, in m/s^2")
+    if not given.ndim and given < 0:
+        up = "(0, g, 0)" if planar else "(0, 0, g)"
+        raise NscdError(f"gravity = {gravity!r}: a number points downwards, {-float(given)!r} here; {up} is upwards")
     return given if given.ndim else -given * np.eye(3)[1 if planar else 2]
 
 
@@ -250,7 +256,7 @@ def _fastest(x: Array, v: Array, pull: Array, walls: Sequence[Plane], bounds: Ar
         return begin
     up = -pull / strength
     drop = np.full(len(x), np.ptp(x @ up) if bounds is None else np.abs(up) @ np.ptp(bounds, axis=1))
-    for wall in walls:
+    for wall in (wall for wall in walls if isinstance(wall, Plane)):
         normal = np.array(wall.normal, dtype=float)
         facing = float(normal @ up)
         if facing > 1e-6 * float(np.linalg.norm(normal)):  # grains fall on it

@@ -3,7 +3,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
+import numpy as np
+
+from nscd_lmp._core import NscdError
 from nscd_lmp.door.materials import Friction, own_words
 
 
@@ -29,10 +33,21 @@ class Plane:
 
     def __post_init__(self) -> None:
         for name in ("point", "normal"):
-            if len(getattr(self, name)) != 3:
-                raise ValueError(f"Plane: {name} = {getattr(self, name)!r} must be three numbers")
+            given = getattr(self, name)
+            try:
+                fits = np.array(given, dtype=float).shape == (3,)
+            except (TypeError, ValueError):
+                fits = False
+            if not fits:
+                raise NscdError(f"Plane: {name} = {given!r} must be three numbers")
 
     def keywords(self) -> list[str]:
         """Return the words of ``fix nscd`` for this wall."""
         words = ["wall", "plane", *(repr(float(value)) for value in (*self.point, *self.normal))]
         return words + own_words(self)
+
+
+def check_walls(walls: Any) -> None:
+    """Refuse what is no sequence of walls; a wall is what has ``keywords()``, as :class:`Plane` does."""
+    if not isinstance(walls, Sequence) or not all(callable(getattr(wall, "keywords", None)) for wall in walls):
+        raise NscdError(f"walls = {walls!r} must be a list of walls, such as [nscd_lmp.Plane((0, 0, 0), (0, 0, 1))]")

@@ -108,6 +108,8 @@ void FixNscd::init()
   });
   checks_.tell_of_other_fixes_nscd();
   checks_.tell_of_forgotten_walls(step_->settings());
+  for (const std::string &doubt : nscd::doubts(step_->settings()))
+    if (comm->me == 0) error->warning(FLERR, "Fix nscd {}: {}", id, doubt);
 }
 
 void FixNscd::check_run()

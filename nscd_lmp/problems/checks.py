@@ -15,6 +15,7 @@ from nscd_lmp._core import NscdError
 Floats = NDArray[np.float64]
 
 LARGEST_ASYMMETRY = 0.05  # of sqrt(W_ii W_jj)
+SPEEDS = 1e-130, 1e130  # m/s, whose squares a double holds, and those of what impulses do
 LARGEST_FRICTION = 1e6  # mu^2 must leave room beside 1 in a double
 UNIT_LENGTH = 1e-6
 CHUNK = 1 << 18  # blocks that are compared with their mirror images at a time
@@ -179,6 +180,16 @@ def check_contacts(blocks: Floats, q: Floats, mu: Floats | None) -> None:
             f"contact {k} with mu = {mu[k]:.6g}: the smallest eigenvalue of its tangential block of W is"
             f" {max(least[k], 0.0) if least[k] > -1e-12 else least[k]:.6g} and must be > 0 for friction to act on;"
             f" give this contact mu = 0{others(bad)}"
+        )
+
+
+def check_speeds(q: Floats) -> None:
+    """Refuse velocities whose squares a double cannot hold: residuals are measured by their norm."""
+    largest = float(np.abs(q).max(initial=0.0))
+    if largest and not SPEEDS[0] < largest < SPEEDS[1]:
+        raise NscdError(
+            f"the largest of q is {largest:.3g} m/s: it must be between {SPEEDS[0]:g} and {SPEEDS[1]:g}, or 0; choose"
+            " another unit of velocity"
         )
 
 

@@ -100,6 +100,7 @@ class ContactProblem:
         velocities = velocities.reshape(n, dim)
         friction = checks.coefficients(mu, n, dim)
         checks.check_matrix(blocks)
+        checks.check_speeds(velocities)
         checks.check_contacts(blocks.diagonal_blocks(), velocities, friction)
         self._set(dim, velocities, friction, blocks, None)
 
@@ -165,7 +166,9 @@ class ContactProblem:
         dim = 1 + axes.shape[1]
         problem = cls.__new__(cls)
         mu = checks.coefficients(friction, n, dim)
-        problem._set(dim, np.column_stack([q_n, q_t]), mu, None, spheres)
+        q = np.column_stack([q_n, q_t])
+        checks.check_speeds(q)
+        problem._set(dim, q, mu, None, spheres)
         return problem
 
     def _set(self, dim: int, q: Floats, mu: Floats | None, blocks: BlockRows | None, spheres: Spheres | None) -> None:

@@ -17,6 +17,7 @@ from nscd_lmp.problems.checks import BlockRows, Floats
 from nscd_lmp.problems.contact_problem import ContactProblem
 
 COLUMNS = ("iterations", "criterion", "motion", "bipotential", "penetration", "relative_residual")
+LARGEST_TOL = 0.1  # of criterion natural, as for fix nscd
 HISTORY_DTYPE = np.dtype([(name, "i8" if name == "iterations" else "f8") for name in COLUMNS])
 
 
@@ -187,6 +188,11 @@ def _check(tol: float, maxiter: int, criterion: str, unconverged: str) -> tuple[
         raise _core.NscdError(f"tol = {tol!r} must be a number and maxiter = {maxiter!r} a whole number") from None
     if not (tol > 0 and math.isfinite(tol)):
         raise _core.NscdError(f"tol = {tol} must be > 0: it is the value of the criterion at which a problem is solved")
+    if criterion == "natural" and tol > LARGEST_TOL:
+        raise _core.NscdError(
+            f"tol = {tol} must be <= {LARGEST_TOL} with criterion natural: it is a share of the norm of q, and more"
+            " says nothing"
+        )
     if not 1 <= maxiter < 2**31:
         raise _core.NscdError(f"maxiter = {maxiter} must be at least 1 and below 2^31")
     for name, value, choices in (

@@ -55,18 +55,47 @@ TEST(restitutions_that_may_make_energy_are_known)
 TEST(materials_that_cannot_be_are_refused)
 {
   CHECK_ERROR(settings("material 1"), "keyword material needs a value");
-  CHECK_ERROR(settings("material 1 2"), "behind the two types stand friction, restitution or e_t");
+  CHECK_ERROR(settings("material 1 2"), "material 1 2: behind the two types stand friction, restitution or e_t");
   CHECK_ERROR(settings("material 1 2 tol 1e-3"), "behind the two types stand friction, restitution or e_t");
   for (const char *types : {"0", "-1", "x", "1.5", "**", "0*2"})
     CHECK_ERROR(settings("material 1 " + std::string(types) + " friction 1"), "names no types of atoms");
   CHECK_ERROR(settings("material 3*2 1 friction 1"), "the range '3*2' has no types in it");
   CHECK_ERROR(nscd::checked(settings("material 1 2* friction -1")), "material 1 2*: friction = -1 must be >= 0");
   CHECK_ERROR(nscd::checked(settings("material 1 1 restitution 2")), "restitution = 2 is outside [0, 1]");
-  CHECK_ERROR(nscd::checked(settings("material 1 1 e_t 0.5")), "e_t = 0.5 has no effect without friction");
+  CHECK_ERROR(Materials(settings("material 1 1 e_t 0.5"), 1), "material 1 1: e_t = 0.5 has no effect without friction");
+  CHECK_ERROR(Materials(settings("material 1 1 friction 0 e_t 0.5 material 2 2 friction 1 material 1 2 friction 1"), 2),
+              "material 1 1: e_t = 0.5 has no effect");
+  CHECK_ERROR(Materials(settings("friction 1 wall plane 0 0 0 0 0 1 friction 0 e_t 0.5"), 1),
+              "wall 1: e_t = 0.5 has no");
   CHECK_ERROR(nscd::checked(settings("wall plane 0 0 0 0 0 1 restitution -1")), "wall 1: restitution = -1");
   CHECK_ERROR(Materials(settings("material 1 3 friction 1"), 2), "there is no atom type 3, the largest is 2");
   CHECK_ERROR(Materials(settings("material 1 1 friction 1 material 2 2 friction 2"), 2), "give `material 1 2` too");
   CHECK_ERROR(nscd::Step(settings("material 2 2 friction 1")), "there is no atom type 2");
+}
+
+TEST(materials_that_others_hide_are_refused)
+{
+  const auto given = [](const std::string &words) { return Materials(settings(words), 3); };
+  CHECK_ERROR(given("material 1 1 friction 0.9 material * * friction 0.1"), "material * * stands behind material 1 1");
+  CHECK_ERROR(given("material 1 2 friction 0.1 material 2 1 friction 0.5"), "material 2 1 stands behind material 1 2");
+  CHECK_ERROR(given("material 1 2* friction 0.1 material 1* 2 friction 0.5 material * 1* friction 1"), "and takes all");
+  given("material * * friction 0.1 restitution 0.1 material 1 1 friction 0.9");
+  given("material 1 1 friction 0.9 material * * restitution 0.1");   // each says what the other does not
+  given("material 1* 1 friction 0.9 material 1 2* friction 0.1 material 1 1 friction 0.2 material 2* 2* friction 1 "
+        "material 2 3 friction 1");
+  Materials(settings("material * * friction 0.5 material 1 1 friction 0.1"), 1);   // for scenes of more types too
+}
+
+TEST(walls_that_lack_what_types_have_are_doubted)
+{
+  const auto doubts = [](const std::string &words) { return nscd::doubts(settings(words)); };
+  const std::string wall = " wall plane 0 0 0 0 0 1";
+  CHECK(doubts("friction 0.5" + wall).empty() && doubts("friction 0.3 material 1 1 friction 0.5" + wall).empty());
+  const auto said = doubts("material * * friction 0.5 restitution 0.5" + wall + " restitution 0" + wall);
+  CHECK(said.size() == 3);
+  CHECK_SAYS(said[0], "wall 1 has no friction, which grains have by their types alone");
+  CHECK_SAYS(said[1], "wall 2 has no friction");
+  CHECK_SAYS(said[2], "wall 2 has no restitution");
 }
 
 // A scene of types whose atoms say nothing of theirs would be a scene of others.

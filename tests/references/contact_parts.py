@@ -2,7 +2,7 @@
 """Random contact problems whose contacts resist rolling, or whose bodies are no spheres, assembled from the mechanics.
 
 All that `tests/core/parts` solves: its bodies and contacts as text, and the Delassus matrix W = G M^-1 G^T of them,
-with rows along N, T1, T2 and, with rolling, R1, R2 of every contact.
+with rows along N, T1, T2 and, with rolling, R1, R2 of every contact, and, with twisting, the moment about N.
 """
 
 from __future__ import annotations
@@ -14,8 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-KINDS = ("rolling_spheres", "rolling_discs", "rigid_bodies", "rolling_bodies")
-ROLLING = ("rolling_spheres", "rolling_discs", "rolling_bodies")
+KINDS = ("rolling_spheres", "rolling_discs", "rigid_bodies", "rolling_bodies", "twisting_spheres", "twisting_bodies")
+TWISTING = ("twisting_spheres", "twisting_bodies")
+ROLLING = ("rolling_spheres", "rolling_discs", "rolling_bodies", *TWISTING)
+SPHERES = ("rolling_spheres", "rolling_discs", "twisting_spheres")
+ARMS = ("rigid_bodies", "rolling_bodies", "twisting_bodies")
 
 
 @dataclass
@@ -34,8 +37,9 @@ class Assembly:
     arm_j: Array
     mu: Array  # (n,)
     mu_r: Array
-    weight_i: Array  # of rolling
+    weight_i: Array  # of rolling and twisting
     weight_j: Array
+    mu_w: Array  # of twisting
 
     @property
     def planar(self) -> bool:
@@ -45,6 +49,10 @@ class Assembly:
     def rolls(self) -> bool:
         return self.kind in ROLLING
 
+    @property
+    def twists(self) -> bool:
+        return self.kind in TWISTING
+
     def text(self) -> str:
         """Return what ``solve_parts`` reads."""
         rows = [[len(self.inverse_mass), len(self.i)]]
@@ -53,7 +61,16 @@ class Assembly:
         for k in range(len(self.i)):
             arms = [*self.normal[k], *self.arm_i[k], *self.arm_j[k]]
             rows.append(
-                [self.i[k], self.j[k], *arms, self.mu[k], self.mu_r[k], self.weight_i[k], self.weight_j[k]],
+                [
+                    self.i[k],
+                    self.j[k],
+                    *arms,
+                    self.mu[k],
+                    self.mu_r[k],
+                    self.weight_i[k],
+                    self.weight_j[k],
+                    self.mu_w[k],
+                ],
             )
         return "\n".join(" ".join(repr(x.item() if hasattr(x, "item") else x) for x in row) for row in rows)
 
@@ -73,7 +90,7 @@ class Assembly:
         i, j = self.i[k], self.j[k]
         g[i, :3] += force
         g[j, :3] -= force
-        if self.kind in ("rolling_spheres", "rolling_discs"):
+        if self.kind in SPHERES:
             turn = np.cross(self.normal[k], force)  # the arms are -r_i n and r_j n, and the spins r omega
             g[i, 3:] -= turn
             g[j, 3:] -= turn
@@ -89,7 +106,8 @@ class Assembly:
         none = np.zeros(3)
         slide, roll = self.frames(k)
         forces = [(self.normal[k], none), *((t, none) for t in slide)]
-        return forces + ([(none, t) for t in roll] if self.rolls else [])
+        moments = [*roll] * self.rolls + [self.normal[k]] * self.twists
+        return forces + [(none, m) for m in moments]
 
     def problem(self) -> coulomb.Problem:
         """Return W, q and coefficients as the reference has them."""
@@ -100,15 +118,20 @@ class Assembly:
         state = np.concatenate([self.velocity, self.spin], axis=1)
         width = len(g) // len(self.i)
         w, q = np.einsum("rbx,sbx->rs", g, respond), np.einsum("rbx,bx->r", g, state)
-        more = ((slice(1 + (width - 1) // 2, None), self.mu_r),) if self.rolls else ()
+        first = 2 if self.planar else 3
+        more: tuple[tuple[slice, Array], ...] = ()
+        if self.rolls:
+            more = ((slice(first, 2 * first - 1), self.mu_r),)
+        if self.twists:
+            more = (*more, (slice(2 * first - 1, None), self.mu_w))
         return coulomb.Problem(w, q.reshape(-1, width), self.mu, more)
 
     def along_axes(self, impulses: Array) -> Array:
-        """Return impulses (n, 7) in space, p_n, p_t and p_r, as (n, d) along the axes of the problem."""
+        """Return impulses (n, 8) in space, p_n, p_t, p_r and p_w, as (n, d) along the axes of the problem."""
         rows = []
         for k, p in enumerate(impulses):
             slide, roll = self.frames(k)
-            rows.append([p[0], *slide @ p[1:4], *(roll @ p[4:7] if self.rolls else [])])
+            rows.append([p[0], *slide @ p[1:4], *(roll @ p[4:7] if self.rolls else []), *([p[7]] * self.twists)])
         return np.array(rows)
 
 
@@ -120,7 +143,7 @@ def random_assembly(kind: str, seed: int, bodies: int = 8, contacts: int = 14) -
     inverse_mass = random.uniform(0.3, 3.0, b)
     inverse_mass[-1] = 0
     inverse_inertia = inverse_mass[:, None, None] * np.eye(3) * (2.0 if planar else 2.5)
-    if kind in ("rigid_bodies", "rolling_bodies"):
+    if kind in ARMS:
         for k in range(bodies):
             axes, _ = np.linalg.qr(random.normal(size=(3, 3)))
             inverse_inertia[k] = axes @ np.diag(inverse_mass[k] / random.uniform(0.1, 1.0, 3)) @ axes.T
@@ -133,16 +156,32 @@ def random_assembly(kind: str, seed: int, bodies: int = 8, contacts: int = 14) -
         velocity[:, 2] = spin[:, 0] = spin[:, 1] = normal[:, 2] = 0
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     arm_i, arm_j = -radius[i, None] * normal, radius[j, None] * normal
-    if kind in ("rigid_bodies", "rolling_bodies"):
+    if kind in ARMS:
         arm_i, arm_j = random.normal(size=(2, n, 3))
     effective = radius[i] * radius[j] / (radius[i] + radius[j])
     effective[j == bodies] = radius[i][j == bodies]  # the fixed one is flat
-    spheres = kind in ("rolling_spheres", "rolling_discs")
+    spheres = kind in SPHERES
     weight_i = effective / radius[i] if spheres else effective
     weight_j = np.where(j == bodies, 0, effective / radius[j]) if spheres else effective
     mu, mu_r = random.uniform(0, 0.6, n), random.uniform(0, 0.4, n)
     mu[::5], mu_r[1::6] = 0, 0
     mu[2::5], mu_r[::4] = 1, 3  # some stick
+    mu_w = random.uniform(0, 0.3, n)
+    mu_w[2::7], mu_w[::3] = 0, 3
     return Assembly(
-        kind, inverse_mass, inverse_inertia, velocity, spin, i, j, normal, arm_i, arm_j, mu, mu_r, weight_i, weight_j
+        kind,
+        inverse_mass,
+        inverse_inertia,
+        velocity,
+        spin,
+        i,
+        j,
+        normal,
+        arm_i,
+        arm_j,
+        mu,
+        mu_r,
+        weight_i,
+        weight_j,
+        mu_w,
     )

@@ -25,7 +25,7 @@ struct Diagonal {
 template <class F>
 Diagonal majorant(const double *block)
 {
-  static_assert(F::discs <= most_discs);
+  static_assert(F::discs <= most_discs, "a contact has three parts beside its normal one at most");
   const auto at = [&](int i, int j) { return 0.5 * (block[F::dim * i + j] + block[F::dim * j + i]); };
   std::array<double, F::discs + 1> own{}, coupling{};
   bool isotropic = true;

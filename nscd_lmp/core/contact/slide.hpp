@@ -13,39 +13,41 @@
 
 namespace nscd {
 
-// What any part has whose impulse is bounded by mu p_n.
-template <class Space>
+// What any part has whose impulse, a number or a vector in space, is bounded by mu p_n.
+template <class Vector>
 struct Bounded;
 
 template <>
-struct Bounded<Planar> {
+struct Bounded<double> {
   double impulse;  // along t, on body i, N s
   double bias;     // m/s, e_t times the tangential velocity before
   double mu;
 };
 
 template <>
-struct Bounded<Spatial> {
+struct Bounded<Vec4> {
   alignas(vec4_alignment) Vec4 impulse;  // on body i, N s
   double bias[3];
   double mu;
 };
 
-NSCD_INLINE double bias(const Bounded<Planar> &part) { return part.bias; }
-NSCD_INLINE Vec4 bias(const Bounded<Spatial> &part) { return Vec4{part.bias[0], part.bias[1], part.bias[2], 0}; }
-inline void set_bias(Bounded<Planar> &part, double value) { part.bias = value; }
-inline void set_bias(Bounded<Spatial> &part, const Vec4 &value)
+NSCD_INLINE double bias(const Bounded<double> &part) { return part.bias; }
+NSCD_INLINE Vec4 bias(const Bounded<Vec4> &part) { return Vec4{part.bias[0], part.bias[1], part.bias[2], 0}; }
+inline void set_bias(Bounded<double> &part, double value) { part.bias = value; }
+inline void set_bias(Bounded<Vec4> &part, const Vec4 &value)
 {
   for (int d = 0; d < 3; ++d) part.bias[d] = value[d];
 }
 
 template <class Space_>
-struct Slide : Bounded<Space_> {
+struct Slide : Bounded<typename Space_::Tangent> {
   using Space = Space_;
   using Vector = typename Space::Tangent;
   static constexpr int axes = Space::unknowns - 1;
-  static constexpr bool stands_alone = true;   // whether W couples it to no other part of its contact
-  static constexpr bool mirrors = false;   // whether, in the plane, its number changes sign seen from the other body
+  // Whether W couples it to no other part of its contact, and its own W over W_nn is the same at all contacts.
+  static constexpr bool stands_alone = true;
+  // Where its impulse is a number: whether that changes sign when it is seen from the other body.
+  static constexpr bool mirrors = false;
 
   // m/s, without bias; `normal` is the contact's normal velocity.
   template <class Pair>

@@ -90,7 +90,7 @@ void read_pair(Settings &settings, Arguments &words)
   read_own(pair.own, words);
   for (std::size_t part = 0; part < material_parts.size(); ++part)
     if (pair.own.has(part)) return settings.pairs.push_back(pair);
-  fail("keyword material: behind the two types stand friction, restitution or e_t, with their numbers");
+  fail("material ", pair.types, ": behind the two types stand friction, restitution or e_t, with their numbers");
 }
 
 std::vector<Keyword> table()

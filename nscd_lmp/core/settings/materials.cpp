@@ -30,11 +30,42 @@ void require_types(const TypeRange &range, int types)
       fail("material: there is no atom type ", type, ", the largest is ", types, ": name types from 1 to ", types);
 }
 
+bool is_within(const TypeRange &one, const TypeRange &other)
+{
+  return one.first >= other.first && (other.last == 0 || (one.last != 0 && one.last <= other.last));
+}
+
+// Whether all that `one` says is said of the same pairs by `later` again.
+bool hides(const PairMaterial &later, const PairMaterial &one)
+{
+  for (std::size_t part = 0; part < material_parts.size(); ++part)
+    if (one.own.has(part) && !later.own.has(part)) return false;
+  return (is_within(one.i, later.i) && is_within(one.j, later.j)) ||
+      (is_within(one.i, later.j) && is_within(one.j, later.i));
+}
+
+void require_none_hidden(std::span<const PairMaterial> pairs)
+{
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    for (std::size_t later = k + 1; later < pairs.size(); ++later)
+      if (hides(pairs[later], pairs[k]))
+        fail("material ", pairs[later].types, " stands behind material ", pairs[k].types, " and takes all that it ",
+             "says, since of several the last one holds: give what is meant for more types first, and each pair once");
+}
+
+void require_effect(const OwnMaterial &own, bool rubs, const std::string &whose)
+{
+  const double e_t = own.over({}).e_t;
+  if (e_t > 0 && !rubs)
+    fail(whose, ": e_t = ", e_t, " has no effect without friction: give `friction`, or leave e_t out");
+}
+
 }    // namespace
 
 Materials::Materials(const Settings &s, int types) : types_(types)
 {
   require_pairs_named(s);
+  require_none_hidden(s.pairs);
   for (int a = 0; a <= types; ++a)
     for (int b = 0; b <= types; ++b) {
       Material material = s.material;
@@ -43,10 +74,25 @@ Materials::Materials(const Settings &s, int types) : types_(types)
       pairs_.push_back(number_of(a > 0 && b > 0 ? material : s.material));
       by_type_ |= a > 0 && b > 0 && pairs_.back() != pairs_[std::size_t(types) + 2];   // pair 1 1
     }
-  for (const Wall &wall : s.walls) walls_.push_back(number_of(wall.own.over(s.material)));
+  for (std::size_t k = 0; k < s.walls.size(); ++k) {
+    const Material material = s.walls[k].own.over(s.material);
+    require_effect(s.walls[k].own, material.friction > 0, name_of_wall(k));
+    walls_.push_back(number_of(material));
+  }
+  require_effects(s);
   for (const Material &material : all_) {
     may_make_energy_ |= material.restitution != all_[0].restitution;
     may_make_energy_ |= s.frictional() && material.restitution != material.e_t;
+  }
+}
+
+void Materials::require_effects(const Settings &s) const
+{
+  for (const PairMaterial &pair : s.pairs) {
+    bool rubs = false;
+    for (int a = 1; a <= types_; ++a)
+      for (int b = 1; b <= types_; ++b) rubs = rubs || (names(pair, a, b) && all_[of_pair(a, b)].friction > 0);
+    require_effect(pair.own, rubs, "material " + pair.types);
   }
 }
 

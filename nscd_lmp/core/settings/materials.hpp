@@ -27,8 +27,8 @@ struct PairMaterial {
 
 class Materials {
  public:
-  // `types`: of atoms, 1 to types. Raises Error for a type that is not there, and where two types have materials of
-  // their own and their pair has none: that is not theirs to say.
+  // `types`: of atoms, 1 to types. Raises Error for a type that is not there, where two types have materials of their
+  // own and their pair has none, since that is not theirs to say, and for what has no effect.
   Materials(const Settings &settings, int types);
 
   // Whether pairs of different types differ; if not, types are not looked at.
@@ -48,6 +48,7 @@ class Materials {
 
  private:
   void require_pairs_named(const Settings &settings) const;
+  void require_effects(const Settings &settings) const;
   MaterialNumber number_of(const Material &material);
 
   int types_;

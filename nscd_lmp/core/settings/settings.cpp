@@ -87,6 +87,21 @@ bool Settings::restitutive() const
   return any_has(*this, &Material::restitution) || any_has(*this, &Material::e_t);
 }
 
+std::vector<std::string> doubts(const Settings &s)
+{
+  std::vector<std::string> said;
+  for (std::size_t part = 0; part < material_parts.size(); ++part) {
+    const auto has = [part](const PairMaterial &pair) { return pair.own.has(part) && pair.own.value(part) > 0; };
+    const MaterialPart &of = material_parts[part];
+    if (s.material.*of.value > 0 || std::none_of(s.pairs.begin(), s.pairs.end(), has)) continue;
+    for (std::size_t k = 0; k < s.walls.size(); ++k)
+      if (!s.walls[k].own.has(part))
+        said.push_back(name_of_wall(k) + " has no " + std::string(of.name) + ", which grains have by their types " +
+                       "alone: give it behind the wall, 0 if it is to have none");
+  }
+  return said;
+}
+
 // mu^2 must leave room beside 1 in a double.
 constexpr double largest_coefficient = 1e6;
 
@@ -99,9 +114,9 @@ static void check_materials(const Settings &s)
     if (mu > largest_coefficient && mu != stick)
       fail(whose, "friction = ", mu, " is more than ", largest_coefficient,
            ": use `stick` for contacts that do not slip");
-    if (material.e_t > 0 && !s.frictional())
-      fail(whose, "e_t = ", material.e_t, " has no effect without friction: give `friction`, or leave e_t out");
   });
+  if (s.material.e_t > 0 && !s.frictional())
+    fail("e_t = ", s.material.e_t, " has no effect without friction: give `friction`, or leave e_t out");
   if (s.inertia && !s.frictional())
     fail("inertia has no effect without friction: grains do not spin; give `friction`, or leave inertia out");
 }

@@ -83,6 +83,9 @@ void follow_paper(Settings &settings);
 // criterion and overlap.
 Settings checked(Settings settings, int dimension = 3);
 
+// What is likely to be a mistake, though it is not refused: a wall that lacks what grains have by their types.
+std::vector<std::string> doubts(const Settings &settings);
+
 // What messages call it; counted from 0.
 std::string name_of_wall(std::size_t wall);
 

@@ -110,8 +110,8 @@ std::vector<std::string> Remarks::take(const Settings &s, bool looks_ahead)
                             "law ", s.law, " does not see them pass each other: use law gap or a smaller timestep"));
   if (short_lists_ > std::max(short_lists_worth_saying, steps_ / 10))
     said.push_back(sentence("in ", short_lists_, " of ", steps_, " steps the neighbor list lacked pairs that meet, ",
-                            "and all grains were looked at to find them, which takes time: raise the cutoff of the pair ",
-                            "style, to ", rounded(cutoff_to_list_), " at most, or build the list more often"));
+                            "and all grains were looked at to find them, which takes time: raise the cutoff of the ",
+                            "pair style, to ", rounded(cutoff_to_list_), " at most, or build the list more often"));
   if (looks_ahead && !s.restitutive() && passing_ > std::max(steps_of_a_flow, steps_ / 2))
     said.push_back(told_passing(passing_, steps_, std::sqrt(passed2_ / pushed_)));
   if (torque_)

@@ -10,7 +10,7 @@
 #include "contact/slide.hpp"
 
 template <class Space_>
-struct Roll : nscd::Bounded<Space_> {
+struct Roll : nscd::Bounded<typename Space_::Tangent> {
   using Space = Space_;
   using Vector = typename Space::Tangent;
   static constexpr int axes = Space::unknowns - 1;

@@ -5,11 +5,12 @@
 //   solve_parts KIND TOL MAXITER < problem > answers
 //
 // The problem: numbers of bodies and contacts. A body: 1/m, the inverse inertia by rows (9; of spheres and discs k / m
-// in the first), velocity and spin (3, 3). A contact: bodies i and j, normal, arms of i and of j (3 each), mu, mu_r and
-// the weights of rolling. Out: for each solver and door a line with its name, how it ended, and impulses in space,
-// contact by contact: p_n, p_t (3), p_r (3).
+// in the first), velocity and spin (3, 3). A contact: bodies i and j, normal, arms of i and of j (3 each), mu, mu_r,
+// the weights of rolling, which twisting has too, and mu_w. Out: for each solver and door a line with its name, how it
+// ended, and impulses in space, contact by contact: p_n, p_t (3), p_r (3), p_w.
 #include "parts/rigid_bodies.hpp"
 #include "parts/roll.hpp"
+#include "parts/twist.hpp"
 #include "problem/delassus_of.hpp"
 #include "problem/criterion_of.hpp"
 #include "problem/own_blocks.hpp"
@@ -52,6 +53,7 @@ struct Given {
   nscd::AlignedVector<RigidBodies::Arms> arms{};
   nscd::AlignedVector<nscd::Slide<Space>> slides{};
   nscd::AlignedVector<Roll<Space>> rolls{};
+  nscd::AlignedVector<Twist> twists{};
   double response = 0;
 
   void read()
@@ -81,6 +83,11 @@ struct Given {
       roll.mu = number();
       roll.weight_i = number();
       roll.weight_j = number();
+      Twist twist{};
+      twist.mu = number();
+      twist.weight_i = roll.weight_i;
+      twist.weight_j = roll.weight_j;
+      twists.push_back(twist);
       slides.push_back(slide);
       rolls.push_back(roll);
       contacts.push_back(c);
@@ -90,16 +97,23 @@ struct Given {
 
 static void print(double x) { std::printf(" %a", x); }
 
-template <class Space>
-static void print(const Vec4 &n, const typename Space::Tangent &t)
+static void print(const Vec4 &v)
 {
-  const Vec4 v = Space::in_space(n, t);
   for (int d = 0; d < 3; ++d) print(v[d]);
 }
 
-// Rolling impulses in the plane are about z.
-static void print_roll(double p) { std::printf(" 0 0 %a", p); }
-static void print_roll(const Vec4 &p) { print<Spatial>(Vec4{}, p); }
+// In space. A number of the plane slides along t or rolls about z, a number in space twists about n.
+template <class Space>
+static void print_disc(std::size_t, const Vec4 &, const Vec4 &p)
+{
+  print(p);
+}
+template <class Space>
+static void print_disc(std::size_t number, const Vec4 &n, double p)
+{
+  if constexpr (std::is_same_v<Space, Spatial>) print(p);
+  else print(number == 0 ? nscd::Planar::in_space(n, p) : Vec4{0, 0, p, 0});
+}
 
 template <class Space, class M>
 static void print_answer(std::string_view solver, std::string_view door, const nscd::SolverReport &report,
@@ -111,11 +125,9 @@ static void print_answer(std::string_view solver, std::string_view door, const n
     const nscd::Contact &c = given.contacts[k];
     const auto p = mechanics.impulse(c, k);
     print(p.n);
-    nscd::for_each_disc([&](std::size_t d, const auto &one) {
-      if (d == 0) print<Space>(c.normal, one);
-      else print_roll(one);
-    }, p.t);
+    nscd::for_each_disc([&](std::size_t d, const auto &one) { print_disc<Space>(d, c.normal, one); }, p.t);
     if (M::parts == 1) std::printf(" 0 0 0");
+    if (M::parts < 3) std::printf(" 0");
   }
   std::printf("\n");
 }
@@ -209,6 +221,16 @@ int main(int words, char **word)
   else if (kind == "rolling_bodies")
     all_solvers<Spatial>(options, [](auto &g) {
       return Mechanics<RigidBodies, Slide<Spatial>, Roll<Spatial>>(rigid(g), g.slides.data(), g.rolls.data());
+    });
+  else if (kind == "twisting_spheres")
+    all_solvers<Spatial>(options, [](auto &g) {
+      return Mechanics<Spheres<Spatial>, Slide<Spatial>, Roll<Spatial>, Twist>(spheres(g), g.slides.data(),
+                                                                              g.rolls.data(), g.twists.data());
+    });
+  else if (kind == "twisting_bodies")
+    all_solvers<Spatial>(options, [](auto &g) {
+      return Mechanics<RigidBodies, Slide<Spatial>, Roll<Spatial>, Twist>(rigid(g), g.slides.data(), g.rolls.data(),
+                                                                          g.twists.data());
     });
   else return 2;
 }
