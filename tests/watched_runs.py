@@ -60,8 +60,8 @@ def _remembered(attach: Callable[..., Any]) -> Callable[..., Any]:
     @functools.wraps(attach)
     def remembering(lmp: Any, group: str = "all", **options: Any) -> Any:
         attached = attach(lmp, group, **options)
-        given = options.get("walls")
-        walls = [(wall.point, wall.normal) for wall in (walls_of(lmp) if given is None else given)]
+        given = walls_of(lmp) if options.get("walls") is None else options["walls"]
+        walls = [(wall.point, wall.normal) for wall in given if isinstance(wall, nscd_lmp.Plane)]
         _fixes(lmp)[PYTHON_DOOR] = (group, walls)
         return attached
 
