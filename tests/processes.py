@@ -39,15 +39,33 @@ def left(number: int, *, thorough: bool = False) -> dict[int, str]:
     found = {}
     for process in there - foreign - {os.getpid()}:
         try:
-            environment = Path(f"/proc/{process}/environ").read_bytes().split(b"\0")
+            environment = environment_of(process).split(b"\0")
             command = Path(f"/proc/{process}/cmdline").read_bytes().replace(b"\0", b" ")
         except OSError:  # it has ended, or is not ours
             continue
         if f"{MARK}={number}".encode() in environment:
             found[process] = command.decode(errors="replace").strip()
-        elif environment != [b""]:  # of one that has just been started, or has ended
+        else:
             foreign.add(process)
     return found
+
+
+def environment_of(process: int) -> bytes:
+    """Return the environment of a process; one that has just been started has none yet, and is waited for a little."""
+    for _again in range(50):
+        environment = Path(f"/proc/{process}/environ").read_bytes()
+        if environment or not is_program(process):
+            break
+        time.sleep(0.001)
+    return environment
+
+
+def is_program(process: int) -> bool:
+    """Return whether it runs a file; the kernel's own and those that have ended do not."""
+    try:
+        return bool(os.readlink(f"/proc/{process}/exe"))
+    except FileNotFoundError:
+        return False
 
 
 def end(number: int, *, thorough: bool = False) -> list[str]:

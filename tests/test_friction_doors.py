@@ -271,7 +271,7 @@ def test_log_and_description_tell_model_and_friction(start, tmp_path, door, plan
         ("wall plane 0 0 0 0 0 1 friction 0.1", "friction 0, 0.1 on wall 1;"),
         ("wall plane 0 0 0 0 0 1 friction stick", "friction 0, stick on wall 1;"),
         ("wall plane 0 0 0 0 0 1 stick", "friction 0, stick on wall 1;"),
-        ("friction 0.1 wall plane 0 0 0 0 0 1 tol 1e-9", "friction 0.1;"),
+        ("wall plane 0 0 0 0 0 1 tol 1e-9 friction 0.1", "friction 0.1;"),
         ("friction 0.2 wall plane 0 0 0 0 0 1 friction 0.1", "friction 0.2, 0.1 on wall 1;"),
     ],
 )

@@ -9,7 +9,7 @@ from pathlib import Path
 import materials_scene
 import numpy as np
 import pytest
-from scenes import DOORS, FLOOR, GRAVITY, grains, harden, start, state
+from scenes import FLOOR, GRAVITY, grains, harden, start, state
 from test_ranks import execute
 
 import nscd_lmp
@@ -21,7 +21,7 @@ OFF = {"gap": 1e-12, "moreau": 0.02 * materials_scene.SLIP / 2}
 
 
 @pytest.mark.fast
-@pytest.mark.parametrize("door", DOORS)
+@pytest.mark.parametrize("door", materials_scene.DOORS)
 @pytest.mark.parametrize("law", OFF)
 def test_every_pair_and_wall_bounces_and_slides_at_its_own_closed_form(tmp_path: Path, law: str, door: str) -> None:
     through, restarted = materials_scene.run(door, law, tmp_path)
@@ -30,7 +30,7 @@ def test_every_pair_and_wall_bounces_and_slides_at_its_own_closed_form(tmp_path:
     np.testing.assert_array_equal(restarted, through)  # a restart keeps types, so materials too
 
 
-@pytest.mark.parametrize("door", DOORS)
+@pytest.mark.parametrize("door", materials_scene.DOORS)
 def test_pairs_across_ranks_have_the_same_materials(tmp_path: Path, door: str) -> None:
     answer = tmp_path / "two.npz"
     execute(2, str(Path(materials_scene.__file__)), door, "gap", str(answer))
@@ -108,7 +108,7 @@ def test_a_wall_without_what_types_have_is_told(tmp_path: Path) -> None:
     """Both doors say so; a wall that says 0 is taken at its word."""
     materials = {(1, 1): nscd_lmp.Material(friction=0.5)}
     lmp = start(grains([(0, 0, 0.01)], 0.01), 1e-4)
-    with pytest.warns(UserWarning, match="wall 1 has no friction, which grains have by their types alone"):
+    with pytest.warns(UserWarning, match="no friction on wall 1, and grains have theirs by types alone"):
         nscd_lmp.attach(lmp, materials=materials, walls=[FLOOR])
     lmp = start(grains([(0, 0, 0.01)], 0.01), 1e-4)
     nscd_lmp.attach(lmp, materials=materials, walls=[dataclasses.replace(FLOOR, friction=0.0)])

@@ -94,6 +94,11 @@ class Inspection:
     def listed_pairs(self) -> ListedPairs:
         """Return which neighbor list gives the contact pairs, and how far it reaches."""
         style, sub_styles = self._pair_styles()
+        if "nscd" in (style, *sub_styles):
+            raise NscdError(
+                "pair_style nscd has materials that attach does not read: use fix nscd, or give attach its materials"
+                " and `pair_style zero CUTOFF` its list"
+            )
         # In hybrid styles `zero`, which has one cutoff for all, is there for the contacts.
         listed = style if not sub_styles else "zero" if "zero" in sub_styles else sub_styles[0]
         types = self._setting("ntypes")

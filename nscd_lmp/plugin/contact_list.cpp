@@ -11,8 +11,11 @@ using namespace LAMMPS_NS;
 
 namespace {
 
-// Granular styles list pairs by the grains' own radii, not by the types' cutoffs.
-double limit_of(const char *style, double skin) { return style && utils::strmatch(style, "^gran") ? skin : INFINITY; }
+// Granular styles and pair nscd list pairs by the grains' own radii, not by the types' cutoffs.
+double limit_of(const char *style, double skin)
+{
+  return style && (utils::strmatch(style, "^gran") || utils::strmatch(style, "^nscd$")) ? skin : INFINITY;
+}
 
 // A list of some types' pairs is made of one that has all.
 NeighList *complete(NeighList *list)

@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "contact_list.hpp"
+#include "pair_nscd.hpp"
 #include "progress.hpp"
 #include "scene/doubts.hpp"
 
@@ -68,6 +69,14 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks
   nscd::Settings settings;
   or_stop(error, id, [&] {
     nscd::parse_keywords(settings, {arg + 3, arg + narg});
+    if (const PairNscd *style = pair()) {
+      if (!settings.pairs.empty())
+        nscd::fail("materials of types of atoms are given to pair style nscd: use `pair_coeff ",
+                   settings.pairs[0].types, " ", written(settings.pairs[0].own), "` in place of keyword material");
+      settings.pairs = style->materials();
+      settings.mixing = style->mixing();
+      materials_version_ = style->version();
+    }
     step_ = std::make_unique<nscd::Step>(settings, nscd::Step::CustomSolver{}, domain->dimension, &ranks_,
                                          atom->ntypes);
   });
@@ -94,20 +103,33 @@ void FixNscd::find_list()
   list_reach_ = 0;   // cutoffs may be others than in the last run
   if (!list_)
     error->all(FLERR,
-               "Fix nscd {} needs the neighbor list of a pair style, and pair style {} has none: use pair_style zero "
-               "CUTOFF with a cutoff of the largest diameter plus what two grains can move in a step, alone or in "
-               "hybrid/overlay with pair_coeff * * zero",
+               "Fix nscd {} needs the neighbor list of a pair style, and pair style {} has none: use pair_style nscd, "
+               "alone with pair_coeff * *, or in hybrid/overlay with pair_coeff * * nscd",
                id, force->pair ? force->pair_style : "none");
+}
+
+PairNscd *FixNscd::pair() const { return dynamic_cast<PairNscd *>(force->pair_match("nscd", 1)); }
+
+// Those that pair_coeff has changed since.
+void FixNscd::take_materials()
+{
+  const PairNscd *style = pair();
+  if (!style || style->version() == materials_version_) return;
+  materials_version_ = style->version();
+  or_stop(error, id, [&] { step_->change_materials(style->materials(), style->mixing()); });
 }
 
 void FixNscd::init()
 {
+  take_materials();
   or_stop(error, id, [&] {
     checks_.require_spheres(step_->settings().frictional());
     checks_.require_sole_integrator();
   });
   checks_.tell_of_other_fixes_nscd();
   checks_.tell_of_forgotten_walls(step_->settings());
+  if (materials_doubted_) return;
+  materials_doubted_ = true;
   for (const std::string &doubt : nscd::doubts(step_->settings()))
     if (comm->me == 0) error->warning(FLERR, "Fix nscd {}: {}", id, doubt);
 }
@@ -286,6 +308,7 @@ nscd::PairList FixNscd::pairs()
     find_images();
   }
   p.reach = std::min(list_reach_, list_limit_);
+  p.beyond_radii = list_limit_;
   p.excludes = excludes_;
   p.types = atom->ntypes + 1;
   p.type = atom->type;

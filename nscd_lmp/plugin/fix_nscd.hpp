@@ -37,6 +37,8 @@ class FixNscd : public Fix {
   void unpack_forward_comm(int count, int first, double *from) override;
 
  private:
+  class PairNscd *pair() const;
+  void take_materials();
   void check_run();
   void tell_of_exclusions();
   void measure_list_reach();
@@ -66,10 +68,11 @@ class FixNscd : public Fix {
   std::vector<double> list_cutoffs_;   // (types + 1, types + 1) of centres
   nscd::Images images_;
   bool rows_every_step_ = false;
-  bool doubted_ = false;
+  bool doubted_ = false, materials_doubted_ = false;
   nscd::Totals totals_;
   nscd::RestartRecords records_;
   int largest_record_ = 0;              // of all ranks
+  int materials_version_ = 0;           // of the pair style's; 0: it has none
   bool excludes_ = false;               // neigh_modify exclude leaves out pairs that could be contacts
   bigint atoms_told_of_ = 0;
   bigint steps_ = 0;                    // of the run

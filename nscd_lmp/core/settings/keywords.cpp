@@ -26,6 +26,13 @@ auto at(double Material::*part)
   return [part](auto &settings) -> auto & { return settings.material.*part; };
 }
 
+std::string told_parts()
+{
+  std::string all;
+  for (const MaterialPart &part : material_parts) all.append(all.empty() ? "" : ", ").append(part.name);
+  return all;
+}
+
 // What stands right behind a wall or a pair of types is its own.
 void read_own(OwnMaterial &own, Arguments &words)
 {
@@ -40,6 +47,37 @@ void read_own(OwnMaterial &own, Arguments &words)
   };
   for (std::size_t part = 0; part < material_parts.size();) part = read(part) ? 0 : part + 1;
 }
+
+}    // namespace
+
+OwnMaterial read_own_material(const std::vector<std::string> &words)
+{
+  std::vector<std::string> named{"pair_coeff"};   // as what errors name the numbers
+  named.insert(named.end(), words.begin(), words.end());
+  OwnMaterial own;
+  Arguments rest(named);
+  rest.keyword();
+  read_own(own, rest);
+  if (rest.done()) return own;
+  const std::string word = rest.keyword();
+  for (std::size_t part = 0; part < material_parts.size(); ++part)
+    if (word == material_parts[part].name || (word == "stick" && part == 0))
+      fail(word, " is given twice: give it once");
+  fail("unknown keyword '", word, "': choose one of ", told_parts());
+}
+
+std::string written(const OwnMaterial &own)
+{
+  std::string text;
+  for (std::size_t part = 0; part < material_parts.size(); ++part) {
+    if (!own.has(part)) continue;
+    text.append(text.empty() ? "" : " ").append(material_parts[part].name);
+    text.append(" ").append(written_friction(own.value(part)));
+  }
+  return text;
+}
+
+namespace {
 
 void read_wall(Settings &settings, Arguments &words)
 {

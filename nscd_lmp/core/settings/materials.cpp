@@ -5,6 +5,7 @@
 #include "settings/settings.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace nscd {
 
@@ -53,6 +54,31 @@ void require_none_hidden(std::span<const PairMaterial> pairs)
              "says, since of several the last one holds: give what is meant for more types first, and each pair once");
 }
 
+bool has_own(const Settings &s, int a, int b)
+{
+  return std::any_of(s.pairs.begin(), s.pairs.end(), [&](const PairMaterial &pair) { return names(pair, a, b); });
+}
+
+Material own_of_types(const Settings &s, int a, int b)
+{
+  Material material = s.material;
+  for (const PairMaterial &pair : s.pairs)
+    if (names(pair, a, b)) material = pair.own.over(material);
+  return material;
+}
+
+// Number by number. What one of the two has none of, the pair has none of, also beside a friction without bound.
+Material mixed(const Material &a, const Material &b, Mixing how)
+{
+  Material both;
+  for (const MaterialPart &part : material_parts) {
+    const double one = a.*part.value, other = b.*part.value;
+    if (how == Mixing::arithmetic) both.*part.value = 0.5 * (one + other);
+    else both.*part.value = one == 0 || other == 0 ? 0 : std::sqrt(one) * std::sqrt(other);
+  }
+  return both;
+}
+
 void require_effect(const OwnMaterial &own, bool rubs, const std::string &whose)
 {
   const double e_t = own.over({}).e_t;
@@ -68,10 +94,7 @@ Materials::Materials(const Settings &s, int types) : types_(types)
   require_none_hidden(s.pairs);
   for (int a = 0; a <= types; ++a)
     for (int b = 0; b <= types; ++b) {
-      Material material = s.material;
-      for (const PairMaterial &pair : s.pairs)
-        if (a > 0 && b > 0 && names(pair, a, b)) material = pair.own.over(material);
-      pairs_.push_back(number_of(a > 0 && b > 0 ? material : s.material));
+      pairs_.push_back(number_of(a > 0 && b > 0 ? of_types(s, a, b) : s.material));
       by_type_ |= a > 0 && b > 0 && pairs_.back() != pairs_[std::size_t(types) + 2];   // pair 1 1
     }
   for (std::size_t k = 0; k < s.walls.size(); ++k) {
@@ -84,6 +107,12 @@ Materials::Materials(const Settings &s, int types) : types_(types)
     may_make_energy_ |= material.restitution != all_[0].restitution;
     may_make_energy_ |= s.frictional() && material.restitution != material.e_t;
   }
+}
+
+Material Materials::of_types(const Settings &s, int a, int b) const
+{
+  if (s.mixing == Mixing::none || a == b || has_own(s, a, b)) return own_of_types(s, a, b);
+  return mixed(own_of_types(s, a, a), own_of_types(s, b, b), s.mixing);
 }
 
 void Materials::require_effects(const Settings &s) const
@@ -112,12 +141,10 @@ void Materials::require_pairs_named(const Settings &s) const
     require_types(pair.i, types_);
     require_types(pair.j, types_);
   }
-  const auto named = [&](int a, int b) {
-    return std::any_of(s.pairs.begin(), s.pairs.end(), [&](const PairMaterial &pair) { return names(pair, a, b); });
-  };
+  if (s.mixing != Mixing::none) return;
   for (int a = 1; a <= types_; ++a)
     for (int b = a + 1; b <= types_; ++b)
-      if (named(a, a) && named(b, b) && !named(a, b))
+      if (has_own(s, a, a) && has_own(s, b, b) && !has_own(s, a, b))
         fail("grains of types ", a, " and ", b, " have materials of their own, and the pair of the two has none: give ",
              "`material ", a, " ", b, "` too");
 }

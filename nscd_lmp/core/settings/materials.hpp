@@ -25,10 +25,17 @@ struct PairMaterial {
   OwnMaterial own;
 };
 
+// What holds between two types that have materials of their own where their pair has none.
+enum class Mixing { none, geometric, arithmetic };
+
+// Reads "friction 0.5 restitution 0.2"; raises Error for other words. And back.
+OwnMaterial read_own_material(const std::vector<std::string> &words);
+std::string written(const OwnMaterial &own);
+
 class Materials {
  public:
   // `types`: of atoms, 1 to types. Raises Error for a type that is not there, where two types have materials of their
-  // own and their pair has none, since that is not theirs to say, and for what has no effect.
+  // own and their pair has none (unless they are mixed), and for what has no effect.
   Materials(const Settings &settings, int types);
 
   // Whether pairs of different types differ; if not, types are not looked at.
@@ -50,6 +57,7 @@ class Materials {
   void require_pairs_named(const Settings &settings) const;
   void require_effects(const Settings &settings) const;
   MaterialNumber number_of(const Material &material);
+  Material of_types(const Settings &settings, int a, int b) const;
 
   int types_;
   std::vector<Material> all_;             // each once

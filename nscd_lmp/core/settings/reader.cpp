@@ -21,14 +21,15 @@ bool is_of_material(const std::string &keyword)
   return std::any_of(material_parts.begin(), material_parts.end(), names);
 }
 
-// Refuses a keyword whose place makes it mean something else than it seems to; `given` are those before it.
-void refuse_misplaced(const std::string &keyword, const std::set<std::string> &given)
+// Refuses a keyword whose place makes it mean something else than it seems to; `given` are those before it, `last` the
+// one right before it.
+void refuse_misplaced(const std::string &keyword, const std::string &last, const std::set<std::string> &given)
 {
   if (!find_keyword(keyword).value.repeats && given.count(setting_of(keyword)))
     fail("keyword ", keyword, keyword == "stick" ? " is a friction, which" : "", " is given twice: give it once");
-  if ((given.count("wall") || given.count("material")) && is_of_material(keyword))
-    fail("keyword ", keyword, " here would be the ", setting_of(keyword), " of all contacts without their own: give ",
-         "that before walls and materials, and what a wall or a material has of its own right behind it, once");
+  if ((last == "wall" || last == "material") && is_of_material(keyword))
+    fail("the ", last, " has its ", setting_of(keyword), " already, and keyword ", keyword, " behind it would be that ",
+         "of all other contacts: give that before walls and materials");
   if (keyword != "paper") return;
   for (const std::string &other : of_paper)
     if (given.count(other)) fail("keyword paper behind ", other, " would override it: give paper first");
@@ -50,12 +51,14 @@ void parse_keywords(Settings &settings, const std::vector<std::string> &words)
 {
   Arguments rest(words);
   std::set<std::string> given;
+  std::string last;
   while (!rest.done()) {
     const std::string name = rest.keyword();
     const Keyword &keyword = find_keyword(name);
-    refuse_misplaced(name, given);
+    refuse_misplaced(name, last, given);
     keyword.value.read(settings, rest);
     given.insert(setting_of(name));
+    last = name;
   }
 }
 

@@ -94,10 +94,12 @@ std::vector<std::string> doubts(const Settings &s)
     const auto has = [part](const PairMaterial &pair) { return pair.own.has(part) && pair.own.value(part) > 0; };
     const MaterialPart &of = material_parts[part];
     if (s.material.*of.value > 0 || std::none_of(s.pairs.begin(), s.pairs.end(), has)) continue;
+    std::string walls;
     for (std::size_t k = 0; k < s.walls.size(); ++k)
-      if (!s.walls[k].own.has(part))
-        said.push_back(name_of_wall(k) + " has no " + std::string(of.name) + ", which grains have by their types " +
-                       "alone: give it behind the wall, 0 if it is to have none");
+      if (!s.walls[k].own.has(part)) walls += (walls.empty() ? "" : ", ") + name_of_wall(k);
+    if (!walls.empty())
+      said.push_back("no " + std::string(of.name) + " on " + walls + ", and grains have theirs by types alone: give " +
+                     "walls their own behind them, 0 if it is to be none");
   }
   return said;
 }

@@ -33,6 +33,7 @@ struct Settings {
   std::string law = "gap";
   Material material{};             // of contacts where pair or wall have none of their own
   std::vector<PairMaterial> pairs{};   // of later ones what they give holds
+  Mixing mixing = Mixing::none;        // of pairs of types without a material, as pair_style nscd has it
   std::optional<Inertia> inertia{};    // none: disc in dimension 2, sphere otherwise
   std::optional<Accuracy> accuracy{};  // none: normal
   // On the criterion. None: natural, relative to the scene's own velocities; a tol of criterion paper is in m/s.

@@ -60,7 +60,7 @@ void ListWatch::refuse_missed(double cutoff) const
   const auto nearer = [](const Missed &a, const Missed &b) { return a.listed < b.listed; };
   const Missed &m = *std::max_element(missed_.pairs().begin(), missed_.pairs().end(), nearer);
   const auto [i, j] = m.pair;
-  const double held = missed_.cutoff(i, j);
+  const double held = missed_.cutoff(state_, i, j);
   const double now = m.gap + state_.atoms.spheres[i].radius + state_.atoms.spheres[j].radius;
   fail("contacts could be missed: grains ", state_.in.grains.tag[i], " and ", state_.in.grains.tag[j], " are ", m.gap,
        " apart and approach by ", m.approach, " in this step, but were not listed: their centres were ", m.listed,

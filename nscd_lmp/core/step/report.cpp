@@ -79,6 +79,10 @@ static std::string of_contacts(const Settings &s, std::string_view name)
   add(s.material.*material_parts[part].value);
   for (const PairMaterial &pair : s.pairs)
     if (pair.own.has(part)) text << ", ", add(pair.own.value(part)) << " of types " << pair.types;
+  const auto has = [part](const PairMaterial &pair) { return pair.own.has(part); };
+  if (s.mixing != Mixing::none && std::any_of(s.pairs.begin(), s.pairs.end(), has))
+    text << (s.mixing == Mixing::geometric ? ", geometric" : ", arithmetic")
+         << " means of types that pair_coeff leaves out";
   for (std::size_t k = 0; k < s.walls.size(); ++k)
     if (s.walls[k].own.has(part)) text << ", ", add(s.walls[k].own.value(part)) << " on wall " << k + 1;
   return text.str();

@@ -23,7 +23,7 @@ static double seconds(Clock::time_point from, Clock::time_point to)
 }
 
 Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *ranks, int types) :
-    settings_(checked(settings, dimension)), materials_(settings_, types),
+    settings_(checked(settings, dimension)), types_(types), materials_(settings_, types),
     scheme_(find_scheme(settings_.law).make(settings_)),
     state_{.in = {.settings = settings_, .materials = materials_, .dimension = dimension},
            .obstacles = Obstacles(settings_)},
@@ -43,6 +43,19 @@ Step::Step(const Settings &settings, CustomSolver custom, int dimension, Ranks *
   state_.table.open_slides(state_.friction.model);
   if (settings_.restitutive()) state_.table.material.open();
   state_.friction.spin_response = inertia == Inertia::disc ? disc_spin_response : sphere_spin_response;
+}
+
+void Step::change_materials(const std::vector<PairMaterial> &pairs, Mixing mixing)
+{
+  Settings changed = settings_;
+  changed.pairs = pairs;
+  changed.mixing = mixing;
+  changed = checked(changed, state_.in.dimension);
+  if (changed.frictional() != settings_.frictional() || changed.restitutive() != settings_.restitutive())
+    fail("whether any contact has friction, or restitution, has changed since it was defined: define it anew behind ",
+         "the materials");
+  materials_ = Materials(changed, types_);
+  settings_ = changed;
 }
 
 void Step::begin_run(bool list_just_built)

@@ -78,6 +78,10 @@ class Step {
   // Something that is no integrator may have moved grains since the last step.
   void forget_places() { left_.forget(); }
 
+  // Materials by pair of types, from the next step on. Raises Error if contacts have friction or restitution now and
+  // had none before, or the other way round.
+  void change_materials(const std::vector<PairMaterial> &pairs, Mixing mixing);
+
   const StepReport &report() const { return report_; }
   const Settings &settings() const { return settings_; }
   bool has_custom_solver() const { return solves_.is_custom(); }
@@ -121,8 +125,9 @@ class Step {
   void write_back();
   void write_report(const Seen &seen, const Rounds::Result &rounds, const Tally &tally, double seconds);
 
-  const Settings settings_;
-  const Materials materials_;
+  Settings settings_;
+  int types_;
+  Materials materials_;
   const std::unique_ptr<Scheme> scheme_;
   State state_;
   const std::unique_ptr<Halo> halo_;   // none on one rank

@@ -20,10 +20,11 @@ void MissedPairs::begin(const PairList &pairs, double listed)
   beyond_.reset();
 }
 
-double MissedPairs::cutoff(int a, int b) const
+double MissedPairs::cutoff(const State &s, int a, int b) const
 {
-  if (range_.types > 0) return range_.cutoffs[range_.type[a] * range_.types + range_.type[b]];
-  return range_.cutoff > 0 ? range_.cutoff : listed_ + 2 * largest_radius_;
+  const double by_radii = s.atoms.spheres[a].radius + s.atoms.spheres[b].radius + range_.beyond_radii;
+  if (range_.types > 0) return std::min(by_radii, range_.cutoffs[range_.type[a] * range_.types + range_.type[b]]);
+  return range_.cutoff > 0 ? std::min(by_radii, range_.cutoff) : listed_ + 2 * largest_radius_;
 }
 
 double MissedPairs::images() const
@@ -105,7 +106,7 @@ void MissedPairs::examine(const State &s, int a, int b, double margin)
   if (!is_ours(s, i, j) || of_i == of_j || s.motion.bodies[of_i][3] + s.motion.bodies[of_j][3] == 0) return;
   const Vec4 separation = motion_.from[i] - motion_.from[j], was = list_.listed_at(i) - list_.listed_at(j);
   const double distance = std::sqrt(dot(separation, separation)), listed = std::sqrt(dot(was, was));
-  if (listed <= cutoff(i, j) * (1 - 1e-12)) return;
+  if (listed <= cutoff(s, i, j) * (1 - 1e-12)) return;
   const double gap = distance - s.atoms.spheres[i].radius - s.atoms.spheres[j].radius;
   const Vec4 one = motion_.one[of_i] - motion_.one[of_j], other = motion_.other[of_i] - motion_.other[of_j];
   const double approach = -std::min(dot(separation, one), dot(separation, other)) / distance;

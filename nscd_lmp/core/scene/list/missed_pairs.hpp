@@ -49,7 +49,7 @@ class MissedPairs {
   const std::vector<Missed> &pairs() const { return missed_; }
   const std::optional<Beyond> &beyond() const { return beyond_; }
   // Centre distance up to which pairs of these atoms were listed, m.
-  double cutoff(int a, int b) const;
+  double cutoff(const State &state, int a, int b) const;
   // Of images, m from each owned atom at least.
   double images() const;
   double largest_radius() const { return largest_radius_; }
