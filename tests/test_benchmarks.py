@@ -81,11 +81,27 @@ FILES = {
         },
         "friction_laws.png": None,
     },
+    "flow_dissipation": {
+        "flow_dissipation.csv": {
+            "grains",
+            "law",
+            "accuracy",
+            "dt",
+            "velocity",
+            "meets",
+            "lasts",
+            "sticks",
+            "slides",
+            "impulse",
+        }
+    },
     "rough_incline": {
         "rough_incline.csv": {
             "seed",
             "dt",
             "law",
+            "accuracy",
+            "nudge",
             "stiffness",
             "velocity",
             "scatter",
