@@ -184,6 +184,28 @@ def test_coefficients_may_change_between_runs(tmp_path: Path) -> None:
     lmp.close()
 
 
+def test_types_may_have_labels(tmp_path: Path) -> None:
+    lmp = instance(
+        "labelmap atom 1 glass 2 steel", "pair_coeff * * friction 0.1", "pair_coeff glass steel friction 0.7"
+    )
+    lmp.commands_list([*pack((0.1, 0.1), 3), "timestep 1e-3", "fix hard all nscd"])
+    assert "0.1 of types 1 1, 0.7 of types 1 2, 0.1 of types 2 2" in log_of(lmp, tmp_path, "run 0")
+    lmp.close()
+
+
+def test_the_style_may_come_after_the_fix_and_go_again(tmp_path: Path) -> None:
+    lmp = instance(*pack((0.1, 0.1), 3), "pair_style zero 0.3", "pair_coeff * *", "timestep 1e-3")
+    lmp.command("fix hard all nscd friction 0.3")
+    assert "friction 0.3;" in log_of(lmp, tmp_path, "run 0")
+    added = ["pair_style nscd", "pair_coeff * * friction 0.7"]
+    assert "friction 0.3, 0.7 of types 1 1" in log_of(lmp, tmp_path, *added, "run 0")
+    assert "friction 0.3;" in log_of(lmp, tmp_path, "pair_style zero 0.3", "pair_coeff * *", "run 0")
+    lmp.commands_list(["unfix hard", "fix hard all nscd material 1 2 friction 0.3"])
+    with pytest.raises(Exception, match=r"use `pair_coeff 1 2 friction 0\.3` in place of keyword material"):
+        lmp.commands_list([*added, "run 0"])
+    lmp.close()
+
+
 @pytest.mark.parametrize(
     ("commands", "message"),
     [

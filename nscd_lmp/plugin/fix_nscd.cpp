@@ -49,6 +49,14 @@ auto in_step(bigint step, Body body)
   }
 }
 
+// Of its own, beside those of the pair style.
+void require_no_materials(const nscd::Settings &settings)
+{
+  if (!settings.pairs.empty())
+    nscd::fail("materials of types of atoms are given to pair style nscd: use `pair_coeff ", settings.pairs[0].types,
+               " ", written(settings.pairs[0].own), "` in place of keyword material");
+}
+
 }    // namespace
 
 FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks_(world), checks_(lmp, this, ranks_)
@@ -70,9 +78,7 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks
   or_stop(error, id, [&] {
     nscd::parse_keywords(settings, {arg + 3, arg + narg});
     if (const PairNscd *style = pair()) {
-      if (!settings.pairs.empty())
-        nscd::fail("materials of types of atoms are given to pair style nscd: use `pair_coeff ",
-                   settings.pairs[0].types, " ", written(settings.pairs[0].own), "` in place of keyword material");
+      require_no_materials(settings);
       settings.pairs = style->materials();
       settings.mixing = style->mixing();
       materials_version_ = style->version();
@@ -110,13 +116,18 @@ void FixNscd::find_list()
 
 PairNscd *FixNscd::pair() const { return dynamic_cast<PairNscd *>(force->pair_match("nscd", 1)); }
 
-// Those that pair_coeff has changed since.
+// Those that pair_coeff has changed since, or none where the style has gone.
 void FixNscd::take_materials()
 {
   const PairNscd *style = pair();
-  if (!style || style->version() == materials_version_) return;
-  materials_version_ = style->version();
-  or_stop(error, id, [&] { step_->change_materials(style->materials(), style->mixing()); });
+  const int version = style ? style->version() : 0;
+  if (version == materials_version_) return;
+  or_stop(error, id, [&] {
+    if (materials_version_ == 0) require_no_materials(step_->settings());
+    if (style) step_->change_materials(style->materials(), style->mixing());
+    else step_->change_materials({}, nscd::Mixing::none);
+  });
+  materials_version_ = version;
 }
 
 void FixNscd::init()

@@ -101,8 +101,8 @@ void PairNscd::coeff(int narg, char **arg)
 {
   if (!allocated) allocate();
   int ilo, ihi, jlo, jhi;
-  utils::bounds(FLERR, arg[0], 1, int(types_), ilo, ihi, error);
-  utils::bounds(FLERR, arg[1], 1, int(types_), jlo, jhi, error);
+  utils::bounds_typelabel(FLERR, arg[0], 1, int(types_), ilo, ihi, lmp, Atom::ATOM);
+  utils::bounds_typelabel(FLERR, arg[1], 1, int(types_), jlo, jhi, lmp, Atom::ATOM);
   try {
     const nscd::OwnMaterial given = nscd::read_own_material({arg + 2, arg + narg});
     int count = 0;
