@@ -110,6 +110,22 @@ def test_a_grain_that_becomes_a_hundred_times_faster_in_a_run_is_followed() -> N
     lmp.close()
 
 
+@pytest.mark.parametrize("types", [1, 2])
+def test_sizes_that_are_far_apart_get_lists_by_size(tmp_path: Path, types: int) -> None:
+    """Small grains fall on a large one, of their type or another; a skin that is given keeps LAMMPS' bins."""
+    small = [f"create_atoms 1 single {0.02 * (k % 8 - 3.5)} {0.02 * (k // 8 - 3.5)} 0.25" for k in range(64)]
+    lmp = instance("pair_coeff * *", types=types)
+    lmp.commands_list([*small, f"create_atoms {types} single 0 0 0.1", "set group all diameter 0.01 density 2500"])
+    lmp.commands_list(["set atom 65 diameter 0.2 density 2500", f"fix g all gravity {GRAVITY} vector 0 0 -1"])
+    lmp.commands_list(["timestep 1e-3", "fix hard all nscd " + FLOOR])
+    assert "half/size/multi" in log_of(lmp, tmp_path, "run 300")
+    assert all_pairs.largest_overlap(all_pairs.of_lammps(lmp)).largest < 1e-5
+    assert state(lmp)[0][:64, 2].max() < 0.25
+    lmp.command("neighbor 0.002 bin")
+    assert "half/size/bin" in log_of(lmp, tmp_path, "run 10")
+    lmp.close()
+
+
 def test_small_grains_beside_a_large_one_of_their_type_are_found_beyond_their_own_radii() -> None:
     """The list has pairs by their own radii, not by the cutoff of their type."""
     lmp = instance("pair_coeff * * restitution 1", box=5.0, types=1)

@@ -13,6 +13,7 @@
 #include <update.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -135,7 +136,7 @@ void PairNscd::init_style()
 {
   if (!atom->radius_flag) error->all(FLERR, "Pair nscd needs the radii of grains: use atom_style sphere");
   measure_radii();
-  choose_skin();
+  choose_list();
   neighbor->add_request(this, NeighConst::REQ_SIZE);
 }
 
@@ -163,11 +164,41 @@ void PairNscd::measure_radii()
   mean_radius_ = sums[1] > 0 ? sums[0] / sums[1] : inserted;
 }
 
-// In place of LAMMPS' default, which knows no radii. A skin that a script gives stays.
-void PairNscd::choose_skin()
+// In place of LAMMPS' defaults, which know no radii. What a script gives by `neighbor` stays.
+void PairNscd::choose_list()
 {
   const bool given = neighbor->skin != default_skin(update->unit_style) && neighbor->skin != chosen_skin_;
-  if (!given && mean_radius_ > 0) neighbor->skin = chosen_skin_ = share_of_radius * mean_radius_;
+  if (given || !(mean_radius_ > 0)) return;
+  neighbor->skin = chosen_skin_ = share_of_radius * mean_radius_;
+  const bool ours = chosen_multi_ || neighbor->style == Neighbor::BIN;
+  const std::vector<double> upper = intervals();
+  if (!ours || (upper.size() < 2 && !chosen_multi_)) return;
+  neighbor->style = Neighbor::MULTI;
+  std::string words = "collection/interval " + std::to_string(upper.size());
+  for (const double bound : upper) words += " " + fmt::format("{}", bound);
+  neighbor->modify_params(words);
+  chosen_multi_ = true;
+}
+
+// Diameters up to which grains share bins, m: with bins for the largest, each of many small ones would look at
+// thousands. One for grains of about the mean size, and one for each power of four beyond that has grains.
+std::vector<double> PairNscd::intervals() const
+{
+  constexpr double about_the_mean = 1.25, apart = 4;
+  const double largest = 2 * *std::max_element(largest_radius_.begin(), largest_radius_.end());
+  const double first = about_the_mean * 2 * mean_radius_;
+  if (!(largest > apart * first)) return {largest * (1 + 1e-9)};
+  const auto interval = [&](double radius) {
+    return std::size_t(std::max(0.0, std::ceil(std::log(2 * radius / first) / std::log(apart))));
+  };
+  std::vector<int> held(interval(0.5 * largest) + 1, 0);
+  for (int i = 0; i < atom->nlocal; ++i) held[std::min(interval(atom->radius[i]), held.size() - 1)] = 1;
+  MPI_Allreduce(MPI_IN_PLACE, held.data(), int(held.size()), MPI_INT, MPI_MAX, world);
+  std::vector<double> upper;
+  for (std::size_t k = 0; k + 1 < held.size(); ++k)
+    if (held[k]) upper.push_back(first * std::pow(apart, double(k)));
+  upper.push_back(largest * (1 + 1e-9));
+  return upper;
 }
 
 double PairNscd::init_one(int i, int j)

@@ -39,13 +39,15 @@ class PairNscd : public Pair {
   nscd::OwnMaterial &own(int i, int j) { return own_[std::size_t(i) * (types_ + 1) + j]; }
   const nscd::OwnMaterial &own(int i, int j) const { return own_[std::size_t(i) * (types_ + 1) + j]; }
   void measure_radii();
-  void choose_skin();
+  void choose_list();
+  std::vector<double> intervals() const;
 
   std::size_t types_ = 0;
   std::vector<nscd::OwnMaterial> own_;     // (types + 1, types + 1), upper half
   std::vector<double> largest_radius_;     // (types + 1), m, of atoms that are there or that a fix will insert
   double mean_radius_ = 0;                 // m
   double chosen_skin_ = -1;                // m
+  bool chosen_multi_ = false;
   int version_ = 0;
 };
 
