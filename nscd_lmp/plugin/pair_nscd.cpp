@@ -5,6 +5,7 @@
 
 #include <atom.h>
 #include <comm.h>
+#include <domain.h>
 #include <error.h>
 #include <fix.h>
 #include <memory.h>
@@ -22,8 +23,8 @@ using namespace LAMMPS_NS;
 
 namespace {
 
-// Of the mean radius. More makes longer lists, less more of them.
-constexpr double share_of_radius = 0.5;
+// Of the mean radius. More makes longer lists, less more of them; and what is added for speeds is no more than `most`.
+constexpr double share_of_radius = 0.5, most_for_speeds = 3;
 
 // LAMMPS' default of `neighbor`, by `units`.
 double default_skin(const char *units)
@@ -169,7 +170,9 @@ void PairNscd::choose_list()
 {
   const bool given = neighbor->skin != default_skin(update->unit_style) && neighbor->skin != chosen_skin_;
   if (given || !(mean_radius_ > 0)) return;
-  neighbor->skin = chosen_skin_ = share_of_radius * mean_radius_;
+  // Once for the step to come, and once for the moves since the list was built.
+  const double for_speeds = std::min(2 * approach_in_step(), most_for_speeds * mean_radius_);
+  neighbor->skin = chosen_skin_ = share_of_radius * mean_radius_ + for_speeds;
   const bool ours = chosen_multi_ || neighbor->style == Neighbor::BIN;
   const std::vector<double> upper = intervals();
   if (!ours || (upper.size() < 2 && !chosen_multi_)) return;
@@ -178,6 +181,23 @@ void PairNscd::choose_list()
   for (const double bound : upper) words += " " + fmt::format("{}", bound);
   neighbor->modify_params(words);
   chosen_multi_ = true;
+}
+
+// What two grains approach each other by in a step, as fast as they are or get if they fall through the box, m.
+double PairNscd::approach_in_step() const
+{
+  double speed2 = 0;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    const double *v = atom->v[i];
+    speed2 = std::max(speed2, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &speed2, 1, MPI_DOUBLE, MPI_MAX, world);
+  for (Fix *fix : modify->get_fix_by_style("^gravity")) {
+    int vector = 0;
+    const auto *pull = static_cast<double *>(fix->extract("gvec", vector));
+    for (int d = 0; pull && d < domain->dimension; ++d) speed2 += 2 * std::abs(pull[d]) * domain->prd[d];
+  }
+  return 2 * update->dt * std::sqrt(speed2);
 }
 
 // Diameters up to which grains share bins, m: with bins for the largest, each of many small ones would look at

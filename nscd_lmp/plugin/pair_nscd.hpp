@@ -40,6 +40,7 @@ class PairNscd : public Pair {
   const nscd::OwnMaterial &own(int i, int j) const { return own_[std::size_t(i) * (types_ + 1) + j]; }
   void measure_radii();
   void choose_list();
+  double approach_in_step() const;
   std::vector<double> intervals() const;
 
   std::size_t types_ = 0;

@@ -157,7 +157,10 @@ bool ListWatch::wants_rebuild()
   if (Reach{listed_, moved, farthest + drifts}.is_enough()) return false;
   if (drifts > 0) return true;
   next_motion(missed_.motion(), state_, look_ahead_ + prediction_);
-  return missed_.find(state_, 2 * longest_move(state_.scales.smooth_kick));
+  const double margin = 2 * longest_move(state_.scales.smooth_kick);
+  // A new list costs no more than a closer look, and serves for more than a step if it reaches far enough.
+  const bool new_one_is_enough = Reach{listed_, 0, farthest}.is_enough();
+  return new_one_is_enough ? missed_.may_find(state_, margin) : missed_.find(state_, margin);
 }
 
 }    // namespace nscd

@@ -197,13 +197,18 @@ std::optional<Beyond> MissedPairs::farthest_beyond(const State &s, double margin
   return found;
 }
 
+bool MissedPairs::may_find(const State &s, double margin)
+{
+  const double spread = this->spread(s);
+  return !(spread + margin <= listed_ || spread_by_layers(s, spread) + margin <= listed_);
+}
+
 // From the cheapest judgement to the closest.
 bool MissedPairs::find(const State &s, double margin)
 {
   missed_.clear();
   beyond_.reset();
-  const double spread = this->spread(s);
-  if (spread + margin <= listed_ || spread_by_layers(s, spread) + margin <= listed_) return false;
+  if (!may_find(s, margin)) return false;
   measure_paces(s);
   if (s.exec.halo) s.exec.halo->together([&] { search(s, margin); });
   else search(s, margin);

@@ -43,7 +43,10 @@ class MissedPairs {
   void begin(const PairList &pairs, double listed);
   // AtomMotion to be judged.
   AtomMotion &motion() { return motion_; }
-  // Finds what meets, or comes within `margin` (m) of that. Collective; returns whether there is any, anywhere.
+  // Whether displacements differ by so much that there can be pairs that meet, or come within `margin` (m) of that.
+  // Collective.
+  bool may_find(const State &state, double margin);
+  // Finds them. Collective; returns whether there is any, anywhere.
   bool find(const State &state, double margin);
 
   const std::vector<Missed> &pairs() const { return missed_; }
