@@ -215,6 +215,16 @@ def test_the_style_may_come_after_the_fix_and_go_again(tmp_path: Path) -> None:
     assert "friction 0.3;" in log_of(lmp, tmp_path, "run 0")
     added = ["pair_style nscd", "pair_coeff * * friction 0.7"]
     assert "friction 0.3, 0.7 of types 1 1" in log_of(lmp, tmp_path, *added, "run 0")
+    again = ["pair_style nscd", "pair_coeff * * friction 0.9"]
+    assert "friction 0.3, 0.9 of types 1 1" in log_of(lmp, tmp_path, *again, "run 0")
+    mixed = [
+        "pair_style nscd",
+        "pair_coeff 1 1 friction 0.9",
+        "pair_coeff 2 2 friction 0.9",
+        "pair_modify mix arithmetic",
+    ]
+    assert "0.9 of types 2 2, arithmetic means" in log_of(lmp, tmp_path, *mixed, "run 0")
+    assert "0.9 of types 2 2, geometric means" in log_of(lmp, tmp_path, "pair_modify mix geometric", "run 0")
     assert "friction 0.3;" in log_of(lmp, tmp_path, "pair_style zero 0.3", "pair_coeff * *", "run 0")
     lmp.commands_list(["unfix hard", "fix hard all nscd material 1 2 friction 0.3"])
     with pytest.raises(Exception, match=r"use `pair_coeff 1 2 friction 0\.3` in place of keyword material"):

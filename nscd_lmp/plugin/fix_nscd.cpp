@@ -81,7 +81,7 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks
       require_no_materials(settings);
       settings.pairs = style->materials();
       settings.mixing = style->mixing();
-      materials_version_ = style->version();
+      materials_ = style->described();
     }
     step_ = std::make_unique<nscd::Step>(settings, nscd::Step::CustomSolver{}, domain->dimension, &ranks_,
                                          atom->ntypes);
@@ -120,14 +120,14 @@ PairNscd *FixNscd::pair() const { return dynamic_cast<PairNscd *>(force->pair_ma
 void FixNscd::take_materials()
 {
   const PairNscd *style = pair();
-  const int version = style ? style->version() : 0;
-  if (version == materials_version_) return;
+  const std::string now = style ? style->described() : "";
+  if (now == materials_) return;
   or_stop(error, id, [&] {
-    if (materials_version_ == 0) require_no_materials(step_->settings());
+    if (materials_.empty()) require_no_materials(step_->settings());
     if (style) step_->change_materials(style->materials(), style->mixing());
     else step_->change_materials({}, nscd::Mixing::none);
   });
-  materials_version_ = version;
+  materials_ = now;
 }
 
 void FixNscd::init()

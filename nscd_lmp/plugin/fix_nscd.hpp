@@ -11,6 +11,7 @@
 #include <fix.h>
 
 #include <memory>
+#include <string>
 
 namespace LAMMPS_NS {
 
@@ -72,7 +73,7 @@ class FixNscd : public Fix {
   nscd::Totals totals_;
   nscd::RestartRecords records_;
   int largest_record_ = 0;              // of all ranks
-  int materials_version_ = 0;           // of the pair style's; 0: it has none
+  std::string materials_;               // of the pair style, as it describes them; empty: it has none
   bool excludes_ = false;               // neigh_modify exclude leaves out pairs that could be contacts
   bigint atoms_told_of_ = 0;
   bigint steps_ = 0;                    // of the run

@@ -115,7 +115,6 @@ void PairNscd::coeff(int narg, char **arg)
   } catch (const nscd::Error &refused) {
     error->all(FLERR, "Pair nscd: pair_coeff {} {}: {}", arg[0], arg[1], refused.what());
   }
-  ++version_;
 }
 
 std::vector<nscd::PairMaterial> PairNscd::materials() const
@@ -131,6 +130,13 @@ nscd::Mixing PairNscd::mixing() const
 {
   if (mix_flag == SIXTHPOWER) error->all(FLERR, "Pair nscd mixes materials by pair_modify mix geometric or arithmetic");
   return mix_flag == ARITHMETIC ? nscd::Mixing::arithmetic : nscd::Mixing::geometric;
+}
+
+std::string PairNscd::described() const
+{
+  std::string text = "mix " + std::to_string(mix_flag);
+  for (const nscd::PairMaterial &pair : materials()) text += ", " + pair.types + " " + written(pair.own);
+  return text;
 }
 
 void PairNscd::init_style()
@@ -256,7 +262,6 @@ void PairNscd::read_restart(FILE *file)
         if (has) own(i, j).set(part, value);
       }
     }
-  ++version_;
 }
 
 void PairNscd::write_data(FILE *file)

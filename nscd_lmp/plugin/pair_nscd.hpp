@@ -7,6 +7,7 @@
 
 #include <pair.h>
 
+#include <string>
 #include <vector>
 
 namespace LAMMPS_NS {
@@ -30,8 +31,8 @@ class PairNscd : public Pair {
   std::vector<nscd::PairMaterial> materials() const;
   // How the others come about, as `pair_modify mix` says.
   nscd::Mixing mixing() const;
-  // Changes with each pair_coeff.
-  int version() const { return version_; }
+  // All of that in words; never empty.
+  std::string described() const;
 
  private:
   void allocate();
@@ -49,7 +50,6 @@ class PairNscd : public Pair {
   double mean_radius_ = 0;                 // m
   double chosen_skin_ = -1;                // m
   bool chosen_multi_ = false;
-  int version_ = 0;
 };
 
 }    // namespace LAMMPS_NS
