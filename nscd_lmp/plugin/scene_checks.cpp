@@ -10,10 +10,12 @@
 #include <domain.h>
 #include <error.h>
 #include <fix.h>
+#include <force.h>
 #include <group.h>
 #include <input.h>
 #include <modify.h>
 #include <neighbor.h>
+#include <pair.h>
 #include <update.h>
 #include <variable.h>
 
@@ -83,6 +85,19 @@ void SceneChecks::tell_of_other_fixes_nscd() const
                      "Fix nscd {}: fix {} is a second fix nscd, and the grains of one are infinitely heavy to the "
                      "other: where they can meet, use one fix for the union of their groups",
                      fix_->id, other->id);
+}
+
+// What a script that is converted to this fix is likely to have left. Once.
+void SceneChecks::tell_of_soft_contacts()
+{
+  Pair *pair = force->pair_match("^gran", 0);
+  if (!pair || told_of_soft_contacts_) return;
+  told_of_soft_contacts_ = true;
+  if (comm->me == 0)
+    error->warning(FLERR,
+                   "Fix nscd {}: pair style {} gives grains the forces of soft contacts beside their rigid ones: use "
+                   "pair_style nscd in its place, and `pair_coeff I J friction ... restitution ...`",
+                   fix_->id, force->pair_match_ptr(pair));
 }
 
 void SceneChecks::tell_of_forgotten_walls(const nscd::Settings &settings) const
