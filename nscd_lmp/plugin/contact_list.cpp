@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "contact_list.hpp"
 
+#include <comm.h>
+#include <domain.h>
 #include <force.h>
 #include <neighbor.h>
 #include <utils.h>
@@ -45,4 +47,24 @@ ContactList LAMMPS_NS::find_contact_list(LAMMPS *lmp)
     if (limit > best.limit) best = {complete(list), limit};
   }
   return best;
+}
+
+nscd::Images LAMMPS_NS::images_of(LAMMPS *lmp)
+{
+  Comm *comm = lmp->comm;
+  const Domain *domain = lmp->domain;
+  nscd::Images images;
+  const bool by_type = comm->mode != Comm::SINGLE;   // images of some types reach less far
+  if (!by_type) images.distance = comm->get_comm_cutoff();
+  if (comm->nprocs == 1 && !domain->xperiodic && !domain->yperiodic && !domain->zperiodic)
+    images.distance = INFINITY;
+  if (domain->triclinic || by_type) return images;
+  images.boxed = true;
+  for (int d = 0; d < 3; ++d) {
+    images.periodic[d] = domain->periodicity[d] && d < domain->dimension;
+    const bool lowest = domain->sublo[d] <= domain->boxlo[d], highest = domain->subhi[d] >= domain->boxhi[d];
+    images.lo[d] = lowest && !images.periodic[d] ? -INFINITY : domain->sublo[d] - images.distance;
+    images.hi[d] = highest && !images.periodic[d] ? INFINITY : domain->subhi[d] + images.distance;
+  }
+  return images;
 }

@@ -218,25 +218,6 @@ void FixNscd::measure_list_reach()
     }
 }
 
-// Which atoms had images on this rank when the list was built: all within the communication cutoff of its part of the
-// box. Along an axis that is not periodic there is nothing beyond the outermost parts.
-void FixNscd::find_images()
-{
-  images_ = {};
-  const bool by_type = comm->mode != Comm::SINGLE;   // images of some types reach less far
-  if (!by_type) images_.distance = comm->get_comm_cutoff();
-  if (comm->nprocs == 1 && !domain->xperiodic && !domain->yperiodic && !domain->zperiodic)
-    images_.distance = INFINITY;
-  if (domain->triclinic || by_type) return;
-  images_.boxed = true;
-  for (int d = 0; d < 3; ++d) {
-    images_.periodic[d] = domain->periodicity[d] && d < domain->dimension;
-    const bool lowest = domain->sublo[d] <= domain->boxlo[d], highest = domain->subhi[d] >= domain->boxhi[d];
-    images_.lo[d] = lowest && !images_.periodic[d] ? -INFINITY : domain->sublo[d] - images_.distance;
-    images_.hi[d] = highest && !images_.periodic[d] ? INFINITY : domain->subhi[d] + images_.distance;
-  }
-}
-
 // The rank of every atom, from its owner by LAMMPS' communication of ghosts.
 void FixNscd::find_homes()
 {
@@ -317,7 +298,7 @@ nscd::PairList FixNscd::pairs()
   p.just_built = neighbor->ago == 0;
   if (p.just_built || list_cutoffs_.empty()) {
     measure_list_reach();
-    find_images();
+    images_ = images_of(lmp);
   }
   p.reach = std::min(list_reach_, list_limit_);
   p.beyond_radii = list_limit_;

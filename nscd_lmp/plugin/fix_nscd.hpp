@@ -43,7 +43,6 @@ class FixNscd : public Fix {
   void check_run();
   void tell_of_exclusions();
   void measure_list_reach();
-  void find_images();
   void find_list();
   void tell_doubts();
   nscd::Grains grains();
