@@ -209,6 +209,24 @@ def test_types_may_have_labels(tmp_path: Path) -> None:
     lmp.close()
 
 
+def test_a_range_of_types_is_of_all_its_pairs_in_either_order(tmp_path: Path) -> None:
+    lmp = instance("pair_coeff * *", "pair_coeff 2*3 1*2 friction 0.7", types=3)
+    lmp.commands_list([*pack((0.1, 0.1, 0.1), 3), "timestep 1e-3", "fix hard all nscd"])
+    told = log_of(lmp, tmp_path, "run 0")
+    assert "friction 0, 0.7 of types 1 2, 0.7 of types 1 3, 0.7 of types 2 2, 0.7 of types 2 3," in told
+    lmp.close()
+
+
+@pytest.mark.parametrize("hybrid", ["hybrid", "hybrid/overlay"])
+def test_more_than_one_style_of_materials_is_refused(hybrid: str) -> None:
+    """Which of the two would hold is not said, and none of them would."""
+    lmp = instance(*pack((0.1, 0.1), 3), f"pair_style {hybrid} nscd nscd", "timestep 1e-3")
+    lmp.commands_list(["pair_coeff * * nscd 1 restitution 1", "pair_coeff 2 2 nscd 2 restitution 1"])
+    with pytest.raises(Exception, match="a hybrid pair style has nscd more than once"):
+        lmp.command("fix hard all nscd")
+    lmp.close()
+
+
 def test_the_style_may_come_after_the_fix_and_go_again(tmp_path: Path) -> None:
     lmp = instance(*pack((0.1, 0.1), 3), "pair_style zero 0.3", "pair_coeff * *", "timestep 1e-3")
     lmp.command("fix hard all nscd friction 0.3")

@@ -114,7 +114,16 @@ void FixNscd::find_list()
                id, force->pair ? force->pair_style : "none");
 }
 
-PairNscd *FixNscd::pair() const { return dynamic_cast<PairNscd *>(force->pair_match("nscd", 1)); }
+PairNscd *FixNscd::pair() const
+{
+  Pair *found = force->pair_match("nscd", 1);   // null where there are several
+  if (!found && force->pair_match("nscd", 1, 1))
+    error->all(FLERR,
+               "Fix nscd {}: a hybrid pair style has nscd more than once, and contacts have one material: use it once, "
+               "for all types",
+               id);
+  return dynamic_cast<PairNscd *>(found);
+}
 
 // Those that pair_coeff has changed since, or none where the style has gone.
 void FixNscd::take_materials()

@@ -106,11 +106,8 @@ void PairNscd::coeff(int narg, char **arg)
   utils::bounds_typelabel(FLERR, arg[1], 1, int(types_), jlo, jhi, lmp, Atom::ATOM);
   try {
     const nscd::OwnMaterial given = nscd::read_own_material({arg + 2, arg + narg});
-    int count = 0;
     for (int i = ilo; i <= ihi; ++i)
-      for (int j = std::max(jlo, i); j <= jhi; ++j, ++count) set(i, j, given);
-    for (int i = std::max(ilo, jlo + 1); count == 0 && i <= ihi; ++i)   // LAMMPS' larger type first
-      for (int j = jlo; j <= std::min(jhi, i); ++j) set(j, i, given);
+      for (int j = jlo; j <= jhi; ++j) set(std::min(i, j), std::max(i, j), given);
   } catch (const nscd::Error &refused) {
     error->all(FLERR, "Pair nscd: pair_coeff {} {}: {}", arg[0], arg[1], refused.what());
   }
