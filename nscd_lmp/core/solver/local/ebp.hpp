@@ -51,11 +51,12 @@ struct Ebp {
     const double tau = chi.p.n - step * (chi.v.n + lift);
     for_each_disc([&](std::size_t d, const auto &p, const auto &mine) NSCD_INLINED {
       const auto tau_t = p - mine * step;
-      const double length2 = inner(tau_t, tau_t), mu = own.discs[d].mu;
-      inside &= std::isinf(mu) || length2 <= mu * mu * tau * tau;
-      lengths[d] = std::sqrt(length2);
+      const double mu = own.discs[d].mu;
+      lengths[d] = inner(tau_t, tau_t);   // squared
+      inside &= lengths[d] <= mu * mu * tau * tau;   // an infinite mu bounds nothing where tau > 0
     }, chi.p.t, chi.v.t);
     if (tau > 0 && inside) return stuck(chi, v, own);
+    for (double &length : lengths) length = std::sqrt(length);
     DiscCone<Tangent> cone(tau, lengths, own);
     if (!(cone.sum() > 0)) return opened(chi, v, own);
     const double height = 1 / (1 + cone.squares()), sum = cone.sum();

@@ -43,7 +43,7 @@ struct Sbp {
     for_each_disc([&](std::size_t d, const auto &p, const auto &u, auto &to) NSCD_INLINED {
       to = p - u * step;
       lengths[d] = length(to);
-      inside &= std::isinf(own.discs[d].mu) || lengths[d] <= own.discs[d].mu * tau;
+      inside &= lengths[d] <= own.discs[d].mu * tau;   // an infinite mu bounds nothing where tau > 0
     }, now.p.t, v.t, next.p.t);
     next.p.n = tau;
     if (tau > 0 && inside) return next;
