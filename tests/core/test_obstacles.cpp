@@ -47,11 +47,11 @@ class Shell final : public Fits<Shell> {
     return {-out / std::max(nscd::length(out), 1e-12), distance(centre) - radius, 0};
   }
   bool is_curved() const override { return true; }
-  std::shared_ptr<const Obstacle> after(double) const override
+  std::shared_ptr<const Obstacle> after(double, double) const override
   {
     return nscd::dot(spin_, spin_) > 0 ? std::make_shared<Shell>(*this) : nullptr;
   }
-  Vec4 velocity_at(const Vec4 &point) const override { return nscd::cross(spin_, point - middle_); }
+  Vec4 velocity_at(const Vec4 &point, const Vec4 &) const override { return nscd::cross(spin_, point - middle_); }
 
  private:
   Vec4 middle_, spin_;
@@ -88,12 +88,12 @@ class Piston final : public Fits<Piston> {
   }
   double distance(const Vec4 &centre) const { return nscd::dot(normal_, centre - point_); }
   Touch at(const Vec4 &centre, double radius, int) const override { return {normal_, distance(centre) - radius, 0}; }
-  std::shared_ptr<const Obstacle> after(double dt) const override
+  std::shared_ptr<const Obstacle> after(double time, double) const override
   {
-    return std::make_shared<Piston>(point_ + velocity_ * dt, normal_, velocity_);
+    return std::make_shared<Piston>(point_ + velocity_ * time, normal_, velocity_);
   }
-  Vec4 velocity_at(const Vec4 &) const override { return velocity_; }
-  double fastest() const override { return std::abs(nscd::dot(normal_, velocity_)); }
+  Vec4 velocity_at(const Vec4 &, const Vec4 &) const override { return velocity_; }
+  double fastest(const Vec4 &, double) const override { return std::abs(nscd::dot(normal_, velocity_)); }
 
  private:
   Vec4 point_, normal_, velocity_;
@@ -170,11 +170,11 @@ TEST(what_a_kind_of_wall_says_of_itself_holds)
         std::vector<Touch> within;
         wall->touch(centre, 0.5, touch.gap + 1e-9, within);
         CHECK(!within.empty());
-        const auto later = wall->after(h), sooner = wall->after(-h);
+        const auto later = wall->after(h, h), sooner = wall->after(-h, h);
         if (!later) continue;
-        const Vec4 velocity = wall->velocity_at(centre - touch.normal * (0.5 + touch.gap));
+        const Vec4 velocity = wall->velocity_at(centre - touch.normal * (0.5 + touch.gap), touch.normal);
         CHECK_NEAR(gap(*later, centre) - gap(*sooner, centre), -2 * h * nscd::dot(touch.normal, velocity), 1e-6 * h);
-        CHECK(nscd::dot(touch.normal, velocity) <= wall->fastest() + 1e-12);
+        CHECK(nscd::dot(touch.normal, velocity) <= wall->fastest(centre, 0.5 + touch.gap) + 1e-12);
       }
       const nscd::Sphere sphere{centre, 0.5, 0};
       std::vector<std::int32_t> near;

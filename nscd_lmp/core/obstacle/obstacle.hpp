@@ -3,8 +3,9 @@
 //
 // A kind of wall is a class of its own file, which registers itself (kinds.hpp). It says how near it is to a sphere and
 // in which direction, part by part: a wall with edges or corners touches a grain in several places at once, and each
-// feature is a contact of its own. A wall may move: after(dt) is the same wall later, and where it has a velocity,
-// each of its contacts has a body of that velocity and of infinite mass.
+// feature is a contact of its own. A wall may move: after() is the same wall later, and each of its contacts then has
+// a body of infinite mass with the velocity of its surface there. What moves as a whole is a shape in its own frame
+// that `Moved` (moved.hpp) places.
 #pragma once
 
 #include "contact/sphere.hpp"
@@ -26,7 +27,7 @@ struct BoxEdges {
 // Of a sphere and a feature of a wall.
 struct Touch {
   alignas(vec4_alignment) Vec4 normal;   // unit, from the wall to the sphere
-  double gap;                            // m, negative where they overlap
+  double gap;                            // m, negative where they overlap; infinite where the feature does not face it
   int feature;                           // the same from step to step
 };
 
@@ -51,12 +52,13 @@ class Obstacle {
   // Whether normals differ from place to place.
   virtual bool is_curved() const { return false; }
 
-  // The same wall `dt` (s) later; null if it stands.
-  virtual std::shared_ptr<const Obstacle> after(double) const { return nullptr; }
-  // Of its surface there, m/s.
-  virtual Vec4 velocity_at(const Vec4 &) const { return Vec4{}; }
-  // No part of its surface comes nearer to anything faster, m/s.
-  virtual double fastest() const { return 0; }
+  // The same wall `time` (s) later, in a step that lasts `step` (s) from now: its velocities are those of that step.
+  // Null if it stands.
+  virtual std::shared_ptr<const Obstacle> after(double /*time*/, double /*step*/) const { return nullptr; }
+  // Of its surface there, m/s; `normal` points away from it.
+  virtual Vec4 velocity_at(const Vec4 & /*point*/, const Vec4 & /*normal*/) const { return Vec4{}; }
+  // No part of its surface that is within `near` (m) of the point moves faster, m/s.
+  virtual double fastest(const Vec4 & /*point*/, double /*near*/) const { return 0; }
 
   // What does not fit raises Error; `name` is "wall 2".
   virtual void require_planar(const std::string &name) const = 0;                       // dimension 2
@@ -76,7 +78,7 @@ class ObstacleOf : public Obstacle {
 };
 
 // A contact with a wall has the number of wall and feature in place of its second atom, below 0.
-constexpr int most_walls = 1 << 16, most_features = 1 << 15;
+constexpr int most_walls = 1 << 9, most_features = 1 << 22;
 
 constexpr std::int32_t wall_code(int wall, int feature) { return -1 - (feature * most_walls + wall); }
 constexpr int wall_of(std::int32_t code) { return (-1 - code) % most_walls; }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "scene/contact_geometry.hpp"
 
+#include <optional>
+
 namespace nscd {
 
 int State::add_obstacle(const Vec4 &velocity)
@@ -18,20 +20,47 @@ int State::add_obstacle(const Vec4 &velocity)
 
 namespace {
 
-// A grain slides along a curved wall, whose plane a lasting contact takes where the two are half-way. Beside a wall
-// that curves towards the grain that plane is farther than the wall at the end of the way; so it is moved until it is
-// not.
-void take_plane_ahead(const State &s, const Candidate &c, const Obstacle &wall, Placed &at)
+// How a grain and a wall's feature lie when contacts that last act, with the grain's velocity at the start of the step.
+struct Ahead {
+  Sphere grain;
+  Touch touch;
+  alignas(vec4_alignment) Vec4 way;   // m, of the grain until then
+};
+
+// None if it does not matter, or if the grain has passed the feature by then.
+std::optional<Ahead> ahead_of(const State &s, const Candidate &c, int i)
 {
+  const int wall = wall_of(c.atom_j);
+  if (s.scales.lasting_moment == 0 || !(s.obstacles.moves(wall) || s.obstacles.sought(wall).is_curved())) return {};
   Sphere grain = s.atoms.spheres[c.atom_i];
+  const Vec4 way = (start_velocity(s, i) + carried_apart(s, c)) * s.scales.lasting_moment;
+  grain.centre += way;
+  const Ahead ahead{grain, touch_of(grain, c, s.obstacles.in_middle(wall)), way};
+  if (std::isinf(ahead.touch.gap)) return {};
+  return ahead;
+}
+
+// A grain slides along a curved wall, or one that turns, whose plane a lasting contact takes where the two are half-way.
+// Beside a wall that curves towards the grain that plane is farther than the wall at the end of the way; so it is moved
+// until it is not.
+void take_plane_ahead(const State &s, const Candidate &c, const Ahead &ahead, Placed &at)
+{
+  Sphere grain = ahead.grain;
+  grain.centre += ahead.way;
+  const double end = touch_of(grain, c, s.obstacles.at_end(wall_of(c.atom_j))).gap;
+  if (std::isinf(end)) return;   // by then it has passed the feature
   const Vec4 way = (at.before + carried_apart(s, c)) * s.scales.lasting_moment;
-  grain.centre += way;
-  const Touch ahead = touch_of(grain, c, wall);
-  grain.centre += way;
-  const double end = touch_of(grain, c, wall).gap;
-  const double start = std::min(ahead.gap - dot(ahead.normal, way), end - 2 * dot(ahead.normal, way));
-  at.normal = ahead.normal;
+  const Vec4 &normal = ahead.touch.normal;
+  const double start = std::min(ahead.touch.gap - dot(normal, way), end - 2 * dot(normal, way));
+  at.normal = normal;
   at.curve = std::min(start - at.gap, 0.0);
+}
+
+// The velocity of a wall's surface where it faces the grain: of the middle of the step, so that a wall that turns is as
+// far on as its mean, where there is such a moment.
+Vec4 wall_velocity(const Obstacle &wall, const Sphere &grain, const Touch &touch)
+{
+  return wall.velocity_at(grain.centre - touch.normal * (grain.radius + touch.gap), touch.normal);
 }
 
 }    // namespace
@@ -43,13 +72,15 @@ Placed placed_at_wall(State &s, const Candidate &c, int i, std::size_t k)
   const Sphere &grain = s.atoms.spheres[c.atom_i];
   const Touch touch = touch_of(grain, c, wall);
   Placed at{touch.normal, start_velocity(s, i), touch.gap, grain.radius, 0, 0};
+  const std::optional<Ahead> ahead = ahead_of(s, c, i);
   if (s.obstacles.moves(number)) {
-    at.j = s.add_obstacle(wall.velocity_at(grain.centre - touch.normal * (grain.radius + touch.gap)));
+    at.j = s.add_obstacle(ahead ? wall_velocity(s.obstacles.in_middle(number), ahead->grain, ahead->touch)
+                                : wall_velocity(wall, grain, touch));
     at.before -= s.motion.bodies[at.j];
   } else {
     at.j = s.obstacle(i, k);
   }
-  if (wall.is_curved() && s.scales.lasting_moment > 0) take_plane_ahead(s, c, wall, at);
+  if (ahead && wall.is_curved()) take_plane_ahead(s, c, *ahead, at);
   return at;
 }
 

@@ -159,20 +159,37 @@ double most_carried(const State &s)
   return most;
 }
 
+// How far the box carries the grain and the wall's surface comes, m; `near`: how far that surface is at most.
+double approach_of_wall(const State &s, int i, int number, double near)
+{
+  const double carried = carried_to_wall(s, i);
+  if (!s.obstacles.moves(number)) return carried;
+  return carried + s.in.dt * s.obstacles.sought(number).fastest(s.atoms.spheres[i].centre, near);
+}
+
+double most_approach_of_wall(const State &s, int number, double watch)
+{
+  if (!s.obstacles.moves(number)) return most_carried(s);
+  double most = 0;
+  for (int i = 0; i < s.in.grains.owned; ++i)
+    most = std::max(most, approach_of_wall(s, i, number, s.atoms.spheres[i].radius + watch));
+  return most;
+}
+
 // Calls f(i, touch, extra) for what a wall's features and grains are apart by no more than `watch`; both that and reach
 // grow by `extra`, what the box carries the grain and the wall moves, m.
 template <class F>
 void for_each_near(State &s, int number, double watch, F f)
 {
   const Obstacle &wall = s.obstacles.sought(number);
-  const double comes_near = s.in.dt * wall.fastest();
+  const int groups = s.obstacles.groups(number);
   const std::span owned(s.atoms.spheres.data(), std::size_t(s.in.grains.owned));
   s.search.beside.clear();
-  wall.find_near(owned, watch + comes_near + most_carried(s), s.search.beside);
+  wall.find_near(owned, watch + most_approach_of_wall(s, number, watch), s.search.beside);
   for (const std::int32_t i : s.search.beside) {
-    if (s.motion.bodies[i][3] == 0) continue;
+    if (s.motion.bodies[i][3] == 0 || (groups != 0 && !(s.in.grains.mask[i] & groups))) continue;
     const Sphere &grain = s.atoms.spheres[i];
-    const double extra = carried_to_wall(s, i) + comes_near;
+    const double extra = approach_of_wall(s, i, number, grain.radius + watch);
     s.search.touches.clear();
     wall.touch(grain.centre, grain.radius, watch + extra, s.search.touches);
     for (const Touch &touch : s.search.touches) f(i, touch, extra);
@@ -238,7 +255,8 @@ NSCD_INLINE bool may_meet(const State &s, const Watched &near)
 {
   const double other = is_wall(near.pair) ? 0 : s.search.moved[s.atoms.owner[near.pair.atom_j]];
   const double extra = is_wall(near.pair)
-      ? carried_to_wall(s, near.pair.atom_i) + s.in.dt * s.obstacles.sought(wall_of(near.pair.atom_j)).fastest()
+      ? approach_of_wall(s, near.pair.atom_i, wall_of(near.pair.atom_j),
+                         s.atoms.spheres[near.pair.atom_i].radius + near.gap)
       : 0;
   return near.gap <= 1.0000001 * (s.search.moved[s.atoms.owner[near.pair.atom_i]] + other + s.drift.approach + extra);
 }
@@ -304,7 +322,8 @@ double gap_constrained(const State &s, const Watched &near)
     const Sphere &grain = s.atoms.spheres[i];
     const Vec4 normal = touch_of(grain, near.pair, wall).normal;
     Vec4 parting = of_i + drift_of(s, near.pair, normal);
-    if (s.obstacles.moves(number)) parting -= wall.velocity_at(grain.centre - normal * (grain.radius + near.gap));
+    if (s.obstacles.moves(number))
+      parting -= wall.velocity_at(grain.centre - normal * (grain.radius + near.gap), normal);
     return near.gap + dot(normal, course_start(s, s.atoms.owner[i]) + s.in.dt * parting);
   }
   const auto [separation, distance, gap] = apart(s.atoms.spheres[i], s.atoms.spheres[j]);

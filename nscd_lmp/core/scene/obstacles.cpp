@@ -7,21 +7,25 @@ namespace nscd {
 
 Obstacles::Obstacles(const Settings &settings)
 {
-  for (const Wall &wall : settings.walls) walls_.push_back(wall.shape);
-  sought_ = at_end_ = walls_;
+  for (const Wall &wall : settings.walls) {
+    walls_.push_back(wall.shape);
+    groups_.push_back(wall.groups);
+  }
+  sought_ = in_middle_ = at_end_ = walls_;
   moves_.assign(walls_.size(), 0);
 }
 
-void Obstacles::begin_step(double dt, double predicted)
+void Obstacles::begin_step(double dt, double predicted, double moment)
 {
-  const auto later = [](const std::shared_ptr<const Obstacle> &wall, double time) {
-    const auto moved = wall->after(time);
-    return moved ? moved : wall;
-  };
   for (std::size_t k = 0; k < walls_.size(); ++k) {
-    at_end_[k] = later(walls_[k], dt);
+    const auto later = [&](double time) {
+      const auto moved = walls_[k]->after(time, dt);
+      return moved ? moved : walls_[k];
+    };
+    at_end_[k] = later(dt);
     moves_[k] = at_end_[k] != walls_[k];
-    sought_[k] = moves_[k] ? later(walls_[k], predicted) : walls_[k];
+    sought_[k] = moves_[k] ? later(predicted) : walls_[k];
+    in_middle_[k] = moves_[k] ? later(predicted + moment) : walls_[k];
   }
 }
 

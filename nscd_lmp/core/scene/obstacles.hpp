@@ -18,20 +18,24 @@ class Obstacles {
   explicit Obstacles(const Settings &settings);
 
   int count() const { return int(walls_.size()); }
-  // Where contacts are sought, and at the end of the step.
+  // Where contacts are sought, when those that last act, and at the end of the step.
   const Obstacle &sought(int wall) const { return *sought_[std::size_t(wall)]; }
+  const Obstacle &in_middle(int wall) const { return *in_middle_[std::size_t(wall)]; }
   const Obstacle &at_end(int wall) const { return *at_end_[std::size_t(wall)]; }
   bool moves(int wall) const { return moves_[std::size_t(wall)]; }
+  // Bits of the groups whose grains it touches; 0: of all.
+  int groups(int wall) const { return groups_[std::size_t(wall)]; }
 
-  // Of length dt; contacts are sought `predicted` after its start, s.
-  void begin_step(double dt, double predicted);
+  // Of length dt; contacts are sought `predicted` after its start, and those that last act `moment` later, s.
+  void begin_step(double dt, double predicted, double moment);
   // It has been taken: the next one starts from its end.
   void end_step() { walls_ = at_end_; }
 
  private:
   using Walls = std::vector<std::shared_ptr<const Obstacle>>;
-  Walls walls_{}, sought_{}, at_end_{};
+  Walls walls_{}, sought_{}, in_middle_{}, at_end_{};
   std::vector<char> moves_{};
+  std::vector<int> groups_{};
 };
 
 }    // namespace nscd

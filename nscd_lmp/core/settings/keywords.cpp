@@ -4,6 +4,7 @@
 #include "parallel/team.hpp"
 #include "settings/schemes.hpp"
 #include "settings/values.hpp"
+#include "settings/wall_options.hpp"
 
 namespace nscd {
 
@@ -26,65 +27,18 @@ auto at(double Material::*part)
   return [part](auto &settings) -> auto & { return settings.material.*part; };
 }
 
-std::string told_parts()
+void read_own_numbers(OwnMaterial &own, Arguments &words)
 {
-  std::string all;
-  for (const MaterialPart &part : material_parts) all.append(all.empty() ? "" : ", ").append(part.name);
-  return all;
+  while (read_own_part(own, words)) {}
 }
-
-// What stands right behind a wall or a pair of types is its own.
-void read_own(OwnMaterial &own, Arguments &words)
-{
-  constexpr std::string_view friction_name = material_parts[0].name;
-  const auto read = [&](std::size_t part) {
-    if (own.has(part)) return false;
-    const bool is_friction = material_parts[part].name == friction_name;
-    if (is_friction && words.skip("stick")) own.set(part, stick);
-    else if (words.skip(material_parts[part].name))
-      own.set(part, is_friction ? read_friction(words) : words.number<double>());
-    return own.has(part);
-  };
-  for (std::size_t part = 0; part < material_parts.size();) part = read(part) ? 0 : part + 1;
-}
-
-}    // namespace
-
-OwnMaterial read_own_material(const std::vector<std::string> &words)
-{
-  std::vector<std::string> named{"pair_coeff"};   // as what errors name the numbers
-  named.insert(named.end(), words.begin(), words.end());
-  OwnMaterial own;
-  Arguments rest(named);
-  rest.keyword();
-  read_own(own, rest);
-  if (rest.done()) return own;
-  const std::string word = rest.keyword();
-  for (std::size_t part = 0; part < material_parts.size(); ++part)
-    if (word == material_parts[part].name || (word == "stick" && part == 0))
-      fail(word, " is given twice: give it once");
-  fail("unknown keyword '", word, "': choose one of ", told_parts());
-}
-
-std::string written(const OwnMaterial &own)
-{
-  std::string text;
-  for (std::size_t part = 0; part < material_parts.size(); ++part) {
-    if (!own.has(part)) continue;
-    text.append(text.empty() ? "" : " ").append(material_parts[part].name);
-    text.append(" ").append(written_friction(own.value(part)));
-  }
-  return text;
-}
-
-namespace {
 
 void read_wall(Settings &settings, Arguments &words)
 {
-  const ObstacleEntry &kind = find_obstacle_kind(words.word());
-  Wall wall{kind.read(words, name_of_wall(settings.walls.size()))};
-  read_own(wall.own, words);
-  settings.walls.push_back(wall);
+  const std::string name = "wall " + std::to_string(settings.walls.size() + 1);
+  const auto shape = find_obstacle_kind(words.word()).read(words, name);
+  WallOptions options(name);
+  while (options.read(words)) {}
+  settings.walls.push_back(options.wall(shape));
 }
 
 // All kinds of walls with their words.
@@ -96,7 +50,8 @@ std::string_view told_walls()
       all.append(all.empty() ? "*" : "; *").append(kind.name).append("* ");
       all.append(kind.words).append(": ").append(kind.doc);
     }
-    return all + "; then what its contacts have of their own, as behind *material*";
+    return all + "; then what its contacts have of their own, as behind *material*, and how it moves: " +
+        std::string(WallOptions::doc);
   }();
   return text;
 }
@@ -125,7 +80,7 @@ void read_pair(Settings &settings, Arguments &words)
 {
   const std::string first = words.word(), second = words.word();
   PairMaterial pair{first + " " + second, read_types(first), read_types(second), {}};
-  read_own(pair.own, words);
+  read_own_numbers(pair.own, words);
   for (std::size_t part = 0; part < material_parts.size(); ++part)
     if (pair.own.has(part)) return settings.pairs.push_back(pair);
   fail("material ", pair.types, ": behind the two types stand friction, restitution or e_t, with their numbers");

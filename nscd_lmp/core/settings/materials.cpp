@@ -97,9 +97,9 @@ Materials::Materials(const Settings &s, int types) : types_(types)
       pairs_.push_back(number_of(a > 0 && b > 0 ? of_types(s, a, b) : s.material));
       by_type_ |= a > 0 && b > 0 && pairs_.back() != pairs_[std::size_t(types) + 2];   // pair 1 1
     }
-  for (std::size_t k = 0; k < s.walls.size(); ++k) {
-    const Material material = s.walls[k].own.over(s.material);
-    require_effect(s.walls[k].own, material.friction > 0, name_of_wall(k));
+  for (const Wall &wall : s.walls) {
+    const Material material = wall.own.over(s.material);
+    require_effect(wall.own, material.friction > 0, wall.name);
     walls_.push_back(number_of(material));
   }
   require_effects(s);

@@ -2,6 +2,7 @@
 // The materials of a scene: what holds between two types of atoms, and between a grain and a wall.
 #pragma once
 
+#include "base/arguments.hpp"
 #include "contact/material.hpp"
 
 #include <cstddef>
@@ -28,8 +29,12 @@ struct PairMaterial {
 // What holds between two types that have materials of their own where their pair has none.
 enum class Mixing { none, geometric, arithmetic };
 
+// Takes the next number that `own` has not yet, as "friction 0.5"; returns false if the next word is none of those.
+bool read_own_part(OwnMaterial &own, Arguments &words);
 // Reads "friction 0.5 restitution 0.2"; raises Error for other words. And back.
 OwnMaterial read_own_material(const std::vector<std::string> &words);
+// Of a word that is not to be there, or stands there twice.
+[[noreturn]] void refuse_own_word(const std::string &word, const std::string &choices);
 std::string written(const OwnMaterial &own);
 
 class Materials {

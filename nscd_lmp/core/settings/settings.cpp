@@ -62,15 +62,13 @@ static void check_parameter(const char *keyword, std::optional<double> value, co
          solver.parameter.empty() ? "none" : solver.parameter);
 }
 
-std::string name_of_wall(std::size_t wall) { return "wall " + std::to_string(wall + 1); }
-
 // Calls f(material, whose) for what contacts have: those without their own, pairs, walls.
 template <class F>
 static void for_each_material(const Settings &s, F f)
 {
   f(s.material, std::string());
   for (const PairMaterial &pair : s.pairs) f(pair.own.over({}), "material " + pair.types + ": ");
-  for (std::size_t k = 0; k < s.walls.size(); ++k) f(s.walls[k].own.over({}), name_of_wall(k) + ": ");
+  for (const Wall &wall : s.walls) f(wall.own.over({}), wall.name + ": ");
 }
 
 static bool any_has(const Settings &s, double Material::*part)
@@ -95,8 +93,8 @@ std::vector<std::string> doubts(const Settings &s)
     const MaterialPart &of = material_parts[part];
     if (s.material.*of.value > 0 || std::none_of(s.pairs.begin(), s.pairs.end(), has)) continue;
     std::string walls;
-    for (std::size_t k = 0; k < s.walls.size(); ++k)
-      if (!s.walls[k].own.has(part)) walls += (walls.empty() ? "" : ", ") + name_of_wall(k);
+    for (const Wall &wall : s.walls)
+      if (!wall.own.has(part)) walls += (walls.empty() ? "" : ", ") + wall.name;
     if (!walls.empty())
       said.push_back("no " + std::string(of.name) + " on " + walls + ", and grains have theirs by types alone: give " +
                      "walls their own behind them, 0 if it is to be none");
@@ -125,7 +123,7 @@ static void check_materials(const Settings &s)
 
 void require_walls_repeat(std::span<const Wall> walls, const BoxEdges &box)
 {
-  for (std::size_t k = 0; k < walls.size(); ++k) walls[k].shape->require_repeats(name_of_wall(k), box);
+  for (const Wall &wall : walls) wall.shape->require_repeats(wall.name, box);
 }
 
 static void check_dimension(const Settings &s, int dimension)
@@ -134,7 +132,7 @@ static void check_dimension(const Settings &s, int dimension)
     if (s.inertia == Inertia::disc) fail("inertia disc needs `dimension 2`: grains in space are spheres");
     return;
   }
-  for (std::size_t k = 0; k < s.walls.size(); ++k) s.walls[k].shape->require_planar(name_of_wall(k));
+  for (const Wall &wall : s.walls) wall.shape->require_planar(wall.name);
 }
 
 void follow_paper(Settings &s)

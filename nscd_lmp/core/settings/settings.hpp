@@ -26,6 +26,8 @@ enum class Accuracy { loose, normal, tight };
 struct Wall {
   std::shared_ptr<const Obstacle> shape;
   OwnMaterial own{};   // what it has not is that of contacts without a material of their own
+  int groups = 0;      // bits of those whose grains it touches; 0: all
+  std::string name{};  // what messages call it
 };
 
 struct Settings {
@@ -86,9 +88,6 @@ Settings checked(Settings settings, int dimension = 3);
 
 // What is likely to be a mistake, though it is not refused: a wall that lacks what grains have by their types.
 std::vector<std::string> doubts(const Settings &settings);
-
-// What messages call it; counted from 0.
-std::string name_of_wall(std::size_t wall);
 
 // Raises Error for a wall that is another one in the next image of the box.
 void require_walls_repeat(std::span<const Wall> walls, const BoxEdges &box);

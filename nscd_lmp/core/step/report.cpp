@@ -83,8 +83,8 @@ static std::string of_contacts(const Settings &s, std::string_view name)
   if (s.mixing != Mixing::none && std::any_of(s.pairs.begin(), s.pairs.end(), has))
     text << (s.mixing == Mixing::geometric ? ", geometric" : ", arithmetic")
          << " means of types that pair_coeff leaves out";
-  for (std::size_t k = 0; k < s.walls.size(); ++k)
-    if (s.walls[k].own.has(part)) text << ", ", add(s.walls[k].own.value(part)) << " on wall " << k + 1;
+  for (const Wall &wall : s.walls)
+    if (wall.own.has(part)) text << ", ", add(wall.own.value(part)) << " on " << wall.name;
   return text.str();
 }
 

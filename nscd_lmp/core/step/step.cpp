@@ -50,7 +50,20 @@ void Step::change_materials(const std::vector<PairMaterial> &pairs, Mixing mixin
   Settings changed = settings_;
   changed.pairs = pairs;
   changed.mixing = mixing;
-  changed = checked(changed, state_.in.dimension);
+  change(changed);
+}
+
+void Step::change_walls(const std::vector<Wall> &walls)
+{
+  Settings changed = settings_;
+  changed.walls = walls;
+  change(changed);
+  state_.obstacles = Obstacles(settings_);
+}
+
+void Step::change(const Settings &wanted)
+{
+  const Settings changed = checked(wanted, state_.in.dimension);
   if (changed.frictional() != settings_.frictional() || changed.restitutive() != settings_.restitutive())
     fail("whether any contact has friction, or restitution, has changed since it was defined: define it anew behind ",
          "the materials");
@@ -75,7 +88,7 @@ const StepReport &Step::advance(const Grains &grains, const PairList &pairs, dou
   state_.in.dt = dt;
   state_.scales.lasting_moment = scheme_->constants.moment * dt;
   state_.in.grains = grains;
-  state_.obstacles.begin_step(dt, dt * prediction_);
+  state_.obstacles.begin_step(dt, dt * prediction_, state_.scales.lasting_moment);
   const Seen seen = prepare(pairs);
   together(halo_.get(), [&] { detect(state_, pairs, sought_); });
   const Rounds::Result rounds = rounds_.run(pairs);

@@ -81,6 +81,8 @@ class Step {
   // Materials by pair of types, from the next step on. Raises Error if contacts have friction or restitution now and
   // had none before, or the other way round.
   void change_materials(const std::vector<PairMaterial> &pairs, Mixing mixing);
+  // The walls, from the next step on, as they are then. Raises Error likewise.
+  void change_walls(const std::vector<Wall> &walls);
 
   const StepReport &report() const { return report_; }
   const Settings &settings() const { return settings_; }
@@ -117,6 +119,7 @@ class Step {
     double dissipated = 0;
     long unconverged = 0, accepted = 0, energy_limited = 0;
   };
+  void change(const Settings &wanted);
   Seen prepare(const PairList &pairs);
   void count(const Solves::Outcome &solved);
   void refuse_unsolved(const Rounds::Result &rounds) const;
