@@ -21,7 +21,8 @@ math(EXPR lammps_number "${CMAKE_MATCH_1} * 10000 + ${CMAKE_MATCH_2} * 100 + ${C
 # Its name must not end in plugin.so: LAMMPS would load it as a plugin of its own.
 add_library(fix_nscd MODULE nscd_lmp/plugin/register_fix.cpp nscd_lmp/plugin/fix_nscd.cpp
             nscd_lmp/plugin/contact_list.cpp nscd_lmp/plugin/mpi_ranks.cpp nscd_lmp/plugin/pair_nscd.cpp
-            nscd_lmp/plugin/restart.cpp nscd_lmp/plugin/scene_checks.cpp)
+            nscd_lmp/plugin/region_checks.cpp nscd_lmp/plugin/region_tree.cpp nscd_lmp/plugin/region_wall.cpp
+            nscd_lmp/plugin/restart.cpp nscd_lmp/plugin/scene_checks.cpp nscd_lmp/plugin/variable_course.cpp nscd_lmp/plugin/wall_nscd.cpp)
 target_include_directories(fix_nscd SYSTEM PRIVATE ${lammps_include} ${mpi_include})
 target_link_libraries(fix_nscd PRIVATE nscd_core)
 export_only(fix_nscd nscd_register_fix)

@@ -193,10 +193,20 @@ def test_coefficients_may_change_between_runs(tmp_path: Path) -> None:
     lmp.commands_list([*pack((0.1, 0.1), 3), "timestep 1e-3", "fix hard all nscd"])
     assert "0.2 of types 1 2" in log_of(lmp, tmp_path, "run 1")
     assert "0.7 of types 1 2" in log_of(lmp, tmp_path, "pair_coeff 1 2 friction 0.7", "run 1")
-    with pytest.raises(
-        Exception, match=r"whether any contact has friction, or restitution, has changed .* define it anew"
-    ):
-        lmp.commands_list(["pair_coeff * * friction 0", "run 1"])
+    assert "frictionless" in log_of(lmp, tmp_path, "pair_coeff * * friction 0", "run 1")
+    assert "0.3 of types 1 2" in log_of(lmp, tmp_path, "pair_coeff 1 2 friction 0.3", "run 1")
+    lmp.close()
+
+
+def test_rows_keep_their_columns_when_friction_goes(tmp_path: Path) -> None:
+    """What reads a column of contacts must not read beyond the rows that have it no more."""
+    lmp = instance("pair_coeff * * friction 0.2")
+    lmp.commands_list(
+        [*pack((0.1, 0.1), 3), "timestep 1e-3", "fix hard all nscd", "compute t all reduce sum f_hard[11] inputs local"]
+    )
+    lmp.command("thermo_style custom step c_t")
+    lmp.commands_list(["run 2", "pair_coeff * * friction 0", "run 2"])
+    assert lmp.extract_compute("t", 0, 0) == 0.0
     lmp.close()
 
 

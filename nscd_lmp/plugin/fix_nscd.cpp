@@ -6,6 +6,7 @@
 #include "pair_nscd.hpp"
 #include "progress.hpp"
 #include "scene/doubts.hpp"
+#include "wall_nscd.hpp"
 
 #include <atom.h>
 #include <comm.h>
@@ -68,27 +69,20 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks
   scalar_flag = vector_flag = array_flag = local_flag = 1;
   size_vector = nscd::report_columns;
   size_array_rows = 1;
-  size_local_rows = 0;
+  size_local_rows = size_local_cols = 0;
   global_freq = local_freq = 1;
   extscalar = extvector = extarray = 0;
   comm_forward = 1;
   restart_global = restart_peratom = 1;
 
-  nscd::Settings settings;
   or_stop(error, id, [&] {
-    nscd::parse_keywords(settings, {arg + 3, arg + narg});
-    if (const PairNscd *style = pair()) {
-      require_no_materials(settings);
-      settings.pairs = style->materials();
-      settings.mixing = style->mixing();
-      materials_ = style->described();
-    }
-    step_ = std::make_unique<nscd::Step>(settings, nscd::Step::CustomSolver{}, domain->dimension, &ranks_,
-                                         atom->ntypes);
+    nscd::parse_keywords(keywords_, {arg + 3, arg + narg});
+    require_own_walls_stand();
+    nscd::Settings settings = with_pair(keywords_);
+    if (!settings.frictional()) settings.inertia.reset();   // friction may come by a fix wall/nscd
+    step_ = make_step(settings);
+    if (const PairNscd *style = pair()) materials_ = style->described();
   });
-  size_local_cols = nscd::contact_columns(settings);
-  // As many as rows have, beyond the totals zeros: `dump local f_ID[*]` takes as many columns as the global array has.
-  size_array_cols = std::max(nscd::totals_columns, size_local_cols);
   // Last, since a fix that is refused above has no destructor to take it back.
   atom->add_callback(Atom::RESTART);
 }
@@ -125,24 +119,76 @@ PairNscd *FixNscd::pair() const
   return dynamic_cast<PairNscd *>(found);
 }
 
-// Those that pair_coeff has changed since, or none where the style has gone.
-void FixNscd::take_materials()
+nscd::Settings FixNscd::with_pair(nscd::Settings settings) const
 {
   const PairNscd *style = pair();
-  const std::string now = style ? style->described() : "";
-  if (now == materials_) return;
-  or_stop(error, id, [&] {
-    if (materials_.empty()) require_no_materials(step_->settings());
-    if (style) step_->change_materials(style->materials(), style->mixing());
-    else step_->change_materials({}, nscd::Mixing::none);
-  });
-  materials_ = now;
+  if (!style) return settings;
+  require_no_materials(settings);
+  settings.pairs = style->materials();
+  settings.mixing = style->mixing();
+  return settings;
+}
+
+std::unique_ptr<nscd::Step> FixNscd::make_step(const nscd::Settings &settings)
+{
+  auto step = std::make_unique<nscd::Step>(settings, nscd::Step::CustomSolver{}, domain->dimension, &ranks_,
+                                           atom->ntypes);
+  // No less than ever: what reads the rows has asked how many columns there are. The array has as many, beyond the
+  // totals zeros: `dump local f_ID[*]` takes as many columns as the global array has.
+  size_local_cols = std::max(size_local_cols, nscd::contact_columns(settings));
+  size_array_cols = std::max(nscd::totals_columns, size_local_cols);
+  return step;
+}
+
+// A restart file knows how far fixes wall/nscd have moved.
+void FixNscd::require_own_walls_stand() const
+{
+  for (const nscd::Wall &wall : keywords_.walls)
+    if (wall.shape->after(0, 1)) nscd::fail(wall.name, " moves: use a fix wall/nscd for it, with the same words");
+}
+
+// What the pair style and fixes wall/nscd have made of the scene since the last run. Steps go on with other materials
+// and walls; but whether contacts have friction, or restitution, is what a Step is made for.
+void FixNscd::take_scene()
+{
+  walls_ = walls_of(lmp);
+  nscd::Settings wanted = with_pair(keywords_);
+  for (FixWallNscd *wall : walls_) wanted.walls.push_back(wall->begin_run());
+  wanted = nscd::checked(wanted, domain->dimension);
+  const nscd::Settings &now = step_->settings();
+  if (wanted.frictional() != now.frictional() || wanted.restitutive() != now.restitutive()) {
+    step_ = make_step(wanted);
+  } else {
+    const std::size_t own = keywords_.walls.size();
+    if (!walls_.empty() || now.walls.size() > own) step_->change_walls(own, std::span(wanted.walls).subspan(own));
+    const std::string materials = pair() ? pair()->described() : "";
+    if (materials != materials_) step_->change_materials(wanted.pairs, wanted.mixing);
+  }
+  materials_ = pair() ? pair()->described() : "";
+  records_.give(*step_, restart_words_);
+}
+
+void FixNscd::begin_walls()
+{
+  for (FixWallNscd *wall : walls_) {
+    if (neighbor->ago == 0 || steps_ == 0) wall->require_inside(groupbit);
+    wall->begin_step();
+  }
+}
+
+void FixNscd::give_to_walls()
+{
+  if (walls_.empty()) return;
+  nscd::collect_wall_touches(step_->state(), wall_touches_);
+  const int own = int(keywords_.walls.size());
+  for (const nscd::WallTouch &touch : wall_touches_)
+    if (touch.wall >= own) walls_[std::size_t(touch.wall - own)]->add(touch);
 }
 
 void FixNscd::init()
 {
-  take_materials();
   or_stop(error, id, [&] {
+    take_scene();
     checks_.require_spheres(step_->settings().frictional());
     checks_.require_sole_integrator();
   });
@@ -333,7 +379,13 @@ void FixNscd::final_integrate()
       checks_.tell_of_force_holders();
     }
   }
-  or_stop(error, id, [&] { in_step(update->ntimestep, [&] { step_->advance(grains(), pairs(), update->dt); }); });
+  or_stop(error, id, [&] {
+    in_step(update->ntimestep, [&] {
+      begin_walls();
+      step_->advance(grains(), pairs(), update->dt);
+    });
+    give_to_walls();
+  });
   totals_.add(step_->report());
   const double time = update->atime + double(update->ntimestep - update->atimestep) * update->dt;
   nscd_progress.add(step_->report(), update->ntimestep, time);
@@ -358,7 +410,7 @@ void FixNscd::fill_local()
   const int rows = int(step_->state().table.contacts.size());
   const int columns = size_local_cols;
   local_values_.resize(std::size_t(rows) * columns);
-  nscd::fill_contact_rows(step_->state(), local_values_.data());
+  nscd::fill_contact_rows(step_->state(), local_values_.data(), columns);
   local_rows_.resize(std::max(rows, 1));
   for (int r = 0; r < rows; ++r) local_rows_[r] = local_values_.data() + std::size_t(r) * columns;
   array_local = local_rows_.data();
@@ -377,6 +429,7 @@ double FixNscd::compute_array(int /*row*/, int column)
 // Called on all ranks ahead of the records; rank 0 writes their number of words, which nothing reads.
 void FixNscd::write_restart(FILE *file)
 {
+  records_.give(*step_, restart_words_);   // of a file that was read, and no run since
   records_.collect(*step_, atom->nlocal, atom->tag);
   double largest = records_.largest();
   ranks_.max({&largest, 1});
@@ -399,7 +452,7 @@ void FixNscd::unpack_restart(int atom_index, int nth)
 {
   const double *record = atom->extra[atom_index];
   for (int k = 0; k < nth; ++k) record += int(record[0]);
-  nscd::RestartRecords::unpack(*step_, record);
+  restart_words_.insert(restart_words_.end(), record, record + int(record[0]));
 }
 
 double FixNscd::memory_usage() { return double(step_->state().table.bytes()); }

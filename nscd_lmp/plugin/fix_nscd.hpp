@@ -4,6 +4,7 @@
 
 #include "mpi_ranks.hpp"
 #include "restart.hpp"
+#include "scene/wall_touches.hpp"
 #include "scene_checks.hpp"
 #include "step/report.hpp"
 #include "step/step.hpp"
@@ -12,6 +13,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace LAMMPS_NS {
 
@@ -39,7 +41,12 @@ class FixNscd : public Fix {
 
  private:
   class PairNscd *pair() const;
-  void take_materials();
+  nscd::Settings with_pair(nscd::Settings settings) const;
+  std::unique_ptr<nscd::Step> make_step(const nscd::Settings &settings);
+  void take_scene();
+  void require_own_walls_stand() const;
+  void begin_walls();
+  void give_to_walls();
   void check_run();
   void tell_of_exclusions();
   void measure_list_reach();
@@ -54,6 +61,7 @@ class FixNscd : public Fix {
 
   nscd::MpiRanks ranks_;
   SceneChecks checks_;
+  nscd::Settings keywords_;             // its own, without what the pair style and fixes wall/nscd add
   std::unique_ptr<nscd::Step> step_;
   class NeighList *list_ = nullptr;
   std::vector<int> homes_;              // (owned + ghosts) rank that owns the atom; empty on one rank
@@ -73,6 +81,9 @@ class FixNscd : public Fix {
   nscd::RestartRecords records_;
   int largest_record_ = 0;              // of all ranks
   std::string materials_;               // of the pair style, as it describes them; empty: it has none
+  std::vector<class FixWallNscd *> walls_;   // of the run, behind its own
+  std::vector<nscd::WallTouch> wall_touches_;
+  std::vector<double> restart_words_;   // records that wait for the first run
   bool excludes_ = false;               // neigh_modify exclude leaves out pairs that could be contacts
   bigint atoms_told_of_ = 0;
   bigint steps_ = 0;                    // of the run

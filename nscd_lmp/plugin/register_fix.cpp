@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// fix_nscd.so: hands fix nscd and pair_style nscd to LAMMPS. Called by nscdplugin.so once it knows that the LAMMPS
-// version is right.
+// fix_nscd.so: hands fix nscd, fix wall/nscd and pair_style nscd to LAMMPS. Called by nscdplugin.so once it knows that
+// the LAMMPS version is right.
 
 #include "fix_nscd.hpp"
 #include "pair_nscd.hpp"
+#include "wall_nscd.hpp"
 
 namespace {
 
@@ -27,6 +28,10 @@ typedef void (*lammpsplugin_regfunc)(lammpsplugin_t *, void *);
 }
 
 void *make_fix_nscd(LAMMPS_NS::LAMMPS *lmp, int narg, char **arg) { return new LAMMPS_NS::FixNscd(lmp, narg, arg); }
+void *make_wall_nscd(LAMMPS_NS::LAMMPS *lmp, int narg, char **arg)
+{
+  return new LAMMPS_NS::FixWallNscd(lmp, narg, arg);
+}
 void *make_pair_nscd(LAMMPS_NS::LAMMPS *lmp) { return new LAMMPS_NS::PairNscd(lmp); }
 
 }    // namespace
@@ -38,6 +43,9 @@ extern "C" [[gnu::visibility("default")]] void nscd_register_fix(void *lmp, void
   lammpsplugin_t fix{version, "fix", "nscd", "nonsmooth contact dynamics of rigid grains", author, {}, plugin_handle};
   fix.creator.v2 = make_fix_nscd;
   hand_over(&fix, lmp);
+  lammpsplugin_t wall{version, "fix", "wall/nscd", "a wall that rigid grains touch", author, {}, plugin_handle};
+  wall.creator.v2 = make_wall_nscd;
+  hand_over(&wall, lmp);
   lammpsplugin_t pair{version, "pair", "nscd", "materials and contacts of rigid grains", author, {}, plugin_handle};
   pair.creator.v1 = make_pair_nscd;
   hand_over(&pair, lmp);

@@ -44,13 +44,17 @@ int RestartRecords::pack(std::int32_t tag, double *to) const
   return size(tag);
 }
 
-void RestartRecords::unpack(Step &step, const double *record)
+void RestartRecords::give(Step &step, std::vector<double> &records)
 {
   const Model model = step.state().friction.model;
-  if (int(record[1]) != unknowns(model)) return;
   const std::size_t width = WarmStart::words(model);
-  for (std::size_t k = head; k + width <= std::size_t(record[0]); k += width)
-    step.memory().add(model, {record + k, width});
+  for (std::size_t first = 0; first < records.size(); first += std::size_t(records[first])) {
+    const double *record = records.data() + first;
+    if (int(record[1]) != unknowns(model)) continue;
+    for (std::size_t k = head; k + width <= std::size_t(record[0]); k += width)
+      step.memory().add(model, {record + k, width});
+  }
+  records.clear();
 }
 
 }    // namespace nscd

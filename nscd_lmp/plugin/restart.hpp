@@ -21,8 +21,8 @@ class RestartRecords {
   int largest() const;
   // Writes the record of a grain; returns its length.
   int pack(std::int32_t tag, double *to) const;
-  // Takes a record as pack wrote it; one of a scene with other unknowns is left alone.
-  static void unpack(Step &step, const double *record);
+  // Takes records as pack wrote them, and clears them; those of a scene with other unknowns are left alone.
+  static void give(Step &step, std::vector<double> &records);
 
  private:
   static constexpr int head = 2;

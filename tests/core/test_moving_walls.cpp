@@ -38,7 +38,7 @@ double period_of(Step &step, Scene &scene, double dt, int swings)
 
 }    // namespace
 
-// A small swing in a level cylinder: a pendulum of length R - r, of 7/5 of its inertia if it rolls. Both keep their height.
+// A small swing in a level cylinder: a pendulum of length R - r, of 7/5 of its inertia if it rolls.
 TEST(a_ball_swings_in_a_cylinder)
 {
   for (const bool rolls : {false, true}) {

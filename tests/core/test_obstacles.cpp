@@ -51,7 +51,7 @@ class Shell final : public Fits<Shell> {
   {
     return nscd::dot(spin_, spin_) > 0 ? std::make_shared<Shell>(*this) : nullptr;
   }
-  Vec4 velocity_at(const Vec4 &point, const Vec4 &) const override { return nscd::cross(spin_, point - middle_); }
+  Vec4 velocity_at(const Vec4 &point, const Touch &) const override { return nscd::cross(spin_, point - middle_); }
 
  private:
   Vec4 middle_, spin_;
@@ -92,7 +92,7 @@ class Piston final : public Fits<Piston> {
   {
     return std::make_shared<Piston>(point_ + velocity_ * time, normal_, velocity_);
   }
-  Vec4 velocity_at(const Vec4 &, const Vec4 &) const override { return velocity_; }
+  Vec4 velocity_at(const Vec4 &, const Touch &) const override { return velocity_; }
   double fastest(const Vec4 &, double) const override { return std::abs(nscd::dot(normal_, velocity_)); }
 
  private:
@@ -172,7 +172,7 @@ TEST(what_a_kind_of_wall_says_of_itself_holds)
         CHECK(!within.empty());
         const auto later = wall->after(h, h), sooner = wall->after(-h, h);
         if (!later) continue;
-        const Vec4 velocity = wall->velocity_at(centre - touch.normal * (0.5 + touch.gap), touch.normal);
+        const Vec4 velocity = wall->velocity_at(centre - touch.normal * (0.5 + touch.gap), touch);
         CHECK_NEAR(gap(*later, centre) - gap(*sooner, centre), -2 * h * nscd::dot(touch.normal, velocity), 1e-6 * h);
         CHECK(nscd::dot(touch.normal, velocity) <= wall->fastest(centre, 0.5 + touch.gap) + 1e-12);
       }

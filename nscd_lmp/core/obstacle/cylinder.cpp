@@ -82,11 +82,10 @@ std::shared_ptr<const Obstacle> read(Arguments &words, const std::string &name)
   return make(Vec4{}, axis, words, name);
 }
 
-constexpr std::string_view doc = "as zcylinder";
-const RegisterObstacle xcylinder({30, "xcylinder", "R", doc, read<0>});
-const RegisterObstacle ycylinder({31, "ycylinder", "R", doc, read<1>});
-const RegisterObstacle zcylinder({32, "zcylinder", "R", "the inside of a cylinder of radius R about the z axis, x = y "
-                                  "= 0, without ends", read<2>});
+const RegisterObstacle xcylinder({30, "xcylinder", "R", "", read<0>});
+const RegisterObstacle ycylinder({31, "ycylinder", "R", "", read<1>});
+const RegisterObstacle zcylinder({32, "zcylinder", "R", "the inside of a cylinder of radius R about an axis through "
+                                  "the origin, without ends", read<2>});
 const RegisterObstacle cylinder({33, "cylinder", "x y z ax ay az R", "the inside of a cylinder of radius R about an "
                                  "axis through a point, along a vector", read_any});
 

@@ -58,9 +58,9 @@ std::shared_ptr<const Obstacle> Moved::after(double time, double step) const
   return later;
 }
 
-Vec4 Moved::velocity_at(const Vec4 &point, const Vec4 &normal) const
+Vec4 Moved::velocity_at(const Vec4 &point, const Touch &touch) const
 {
-  const Vec4 belt = course_->belt - normal * dot(normal, course_->belt);
+  const Vec4 belt = course_->belt - touch.normal * dot(touch.normal, course_->belt);
   return rate_ + cross(rotation_, point - course_->point - place_.shift) + belt;
 }
 

@@ -21,7 +21,7 @@ class Moved final : public Obstacle {
   bool is_curved() const override { return shape_->is_curved() || course_->rotates; }
 
   std::shared_ptr<const Obstacle> after(double time, double step) const override;
-  Vec4 velocity_at(const Vec4 &point, const Vec4 &normal) const override;
+  Vec4 velocity_at(const Vec4 &point, const Touch &touch) const override;
   double fastest(const Vec4 &point, double near) const override;
 
   void require_planar(const std::string &name) const override;

@@ -55,8 +55,8 @@ class Obstacle {
   // The same wall `time` (s) later, in a step that lasts `step` (s) from now: its velocities are those of that step.
   // Null if it stands.
   virtual std::shared_ptr<const Obstacle> after(double /*time*/, double /*step*/) const { return nullptr; }
-  // Of its surface there, m/s; `normal` points away from it.
-  virtual Vec4 velocity_at(const Vec4 & /*point*/, const Vec4 & /*normal*/) const { return Vec4{}; }
+  // Of its surface there, m/s, where that touch is of.
+  virtual Vec4 velocity_at(const Vec4 & /*point*/, const Touch &) const { return Vec4{}; }
   // No part of its surface that is within `near` (m) of the point moves faster, m/s.
   virtual double fastest(const Vec4 & /*point*/, double /*near*/) const { return 0; }
 

@@ -77,11 +77,10 @@ std::shared_ptr<const Obstacle> read(Arguments &words, const std::string &name)
 }
 
 constexpr std::string_view words = "lo hi";
-constexpr std::string_view doc = "as zplane";
-const RegisterObstacle xplane({20, "xplane", words, doc, read<0>});
-const RegisterObstacle yplane({21, "yplane", words, doc, read<1>});
-const RegisterObstacle zplane({22, "zplane", words, "planes at z = lo below the grains and z = hi above them, either "
-                               "may be NULL for none", read<2>});
+const RegisterObstacle xplane({20, "xplane", words, "", read<0>});
+const RegisterObstacle yplane({21, "yplane", words, "", read<1>});
+const RegisterObstacle zplane({22, "zplane", words, "planes across an axis, lo below the grains and hi above them; "
+                               "either may be NULL for none", read<2>});
 
 }    // namespace
 

@@ -40,9 +40,9 @@ std::optional<Ahead> ahead_of(const State &s, const Candidate &c, int i)
   return ahead;
 }
 
-// A grain slides along a curved wall, or one that turns, whose plane a lasting contact takes where the two are half-way.
-// Beside a wall that curves towards the grain that plane is farther than the wall at the end of the way; so it is moved
-// until it is not.
+// A grain slides along a curved wall, or one that turns, whose plane a lasting contact takes where the two are
+// half-way. Beside a wall that curves towards the grain that plane is farther than the wall at the end of the way; so
+// it is moved until it is not.
 void take_plane_ahead(const State &s, const Candidate &c, const Ahead &ahead, Placed &at)
 {
   Sphere grain = ahead.grain;
@@ -60,7 +60,7 @@ void take_plane_ahead(const State &s, const Candidate &c, const Ahead &ahead, Pl
 // far on as its mean, where there is such a moment.
 Vec4 wall_velocity(const Obstacle &wall, const Sphere &grain, const Touch &touch)
 {
-  return wall.velocity_at(grain.centre - touch.normal * (grain.radius + touch.gap), touch.normal);
+  return wall.velocity_at(grain.centre - touch.normal * (grain.radius + touch.gap), touch);
 }
 
 }    // namespace

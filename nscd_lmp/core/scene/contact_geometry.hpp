@@ -32,7 +32,8 @@ inline std::uint64_t contact_key(const State &s, const Candidate &c)
   const auto &g = s.in.grains;
   if (is_wall(c))
     fail("grain ", g.tag[c.atom_i], " is ", -gap, " inside ", s.in.settings.walls[std::size_t(wall_of(c.atom_j))].name,
-         ", more than its radius ", g.radius[c.atom_i], ": start it on the side that the wall's normal points to, or take a smaller timestep");
+         ", more than its radius ", g.radius[c.atom_i], ": start it on the side that the wall's normal points to, or ",
+         "take a smaller timestep");
   fail("grains ", g.tag[c.atom_i], " and ", g.tag[c.atom_j], " overlap by ", -gap, ", more than the smaller radius ",
        std::min(g.radius[c.atom_i], g.radius[c.atom_j]),
        ": remove one of them, or take a smaller timestep if they were apart before");

@@ -320,10 +320,11 @@ double gap_constrained(const State &s, const Watched &near)
     const int number = wall_of(j);
     const Obstacle &wall = s.obstacles.sought(number);
     const Sphere &grain = s.atoms.spheres[i];
-    const Vec4 normal = touch_of(grain, near.pair, wall).normal;
+    const Touch touch = touch_of(grain, near.pair, wall);
+    const Vec4 &normal = touch.normal;
     Vec4 parting = of_i + drift_of(s, near.pair, normal);
     if (s.obstacles.moves(number))
-      parting -= wall.velocity_at(grain.centre - normal * (grain.radius + near.gap), normal);
+      parting -= wall.velocity_at(grain.centre - normal * (grain.radius + near.gap), touch);
     return near.gap + dot(normal, course_start(s, s.atoms.owner[i]) + s.in.dt * parting);
   }
   const auto [separation, distance, gap] = apart(s.atoms.spheres[i], s.atoms.spheres[j]);

@@ -5,11 +5,15 @@
 
 namespace nscd {
 
-Obstacles::Obstacles(const Settings &settings)
+Obstacles::Obstacles(const Settings &settings) { change(settings, 0); }
+
+void Obstacles::change(const Settings &settings, std::size_t kept)
 {
-  for (const Wall &wall : settings.walls) {
-    walls_.push_back(wall.shape);
-    groups_.push_back(wall.groups);
+  walls_.resize(kept);
+  groups_.resize(kept);
+  for (std::size_t k = kept; k < settings.walls.size(); ++k) {
+    walls_.push_back(settings.walls[k].shape);
+    groups_.push_back(settings.walls[k].groups);
   }
   sought_ = in_middle_ = at_end_ = walls_;
   moves_.assign(walls_.size(), 0);

@@ -26,6 +26,9 @@ class Obstacles {
   // Bits of the groups whose grains it touches; 0: of all.
   int groups(int wall) const { return groups_[std::size_t(wall)]; }
 
+  // Those of the settings, of which the first `kept` go on as they are.
+  void change(const Settings &settings, std::size_t kept);
+
   // Of length dt; contacts are sought `predicted` after its start, and those that last act `moment` later, s.
   void begin_step(double dt, double predicted, double moment);
   // It has been taken: the next one starts from its end.

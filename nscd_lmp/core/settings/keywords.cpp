@@ -41,17 +41,19 @@ void read_wall(Settings &settings, Arguments &words)
   settings.walls.push_back(options.wall(shape));
 }
 
-// All kinds of walls with their words.
+// All kinds of walls with their words; kin of one kind have its text.
 std::string_view told_walls()
 {
   static const std::string text = [] {
     std::string all;
+    std::string_view between = "";
     for (const ObstacleEntry &kind : obstacle_kinds()) {
-      all.append(all.empty() ? "*" : "; *").append(kind.name).append("* ");
-      all.append(kind.words).append(": ").append(kind.doc);
+      all.append(between).append("*").append(kind.name).append("* ").append(kind.words);
+      between = kind.doc.empty() ? ", " : "; ";
+      if (!kind.doc.empty()) all.append(": ").append(kind.doc);
     }
-    return all + "; then what its contacts have of their own, as behind *material*, and how it moves: " +
-        std::string(WallOptions::doc);
+    return all + "; then what its contacts have of their own, as behind *material*; walls that move: " +
+        "[fix wall/nscd](wall_nscd.md)";
   }();
   return text;
 }

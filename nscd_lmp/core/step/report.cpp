@@ -36,9 +36,9 @@ int contact_columns(const Settings &settings)
   return int(contact_column_names.size()) - (settings.frictional() ? 0 : tangential_columns);
 }
 
-void fill_contact_rows(const State &s, double *row)
+void fill_contact_rows(const State &s, double *row, int columns)
 {
-  const int columns = contact_columns(s.in.settings);
+  std::fill_n(row, s.table.contacts.size() * std::size_t(columns), 0.0);
   const double per_force = s.in.grains.force_to_acceleration;   // impulses are mass times velocity within
   for (std::size_t k = 0; k < s.table.contacts.size(); ++k, row += columns) {
     const Contact &c = s.table.contacts[k];

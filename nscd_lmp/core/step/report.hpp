@@ -55,9 +55,13 @@ constexpr std::array<std::string_view, 13> contact_column_names{
 constexpr int tangential_columns = 3;  // the last ones, with friction only
 int contact_columns(const Settings &settings);
 
-// Writes contacts x contact_columns doubles: the contacts of the step at q_{k+1}, m and N s (force times
-// time).
-void fill_contact_rows(const State &state, double *rows);
+// Writes contacts x columns doubles: the contacts of the step at q_{k+1}, m and N s (force times time); zeros where
+// there are more columns than these have.
+void fill_contact_rows(const State &state, double *rows, int columns);
+inline void fill_contact_rows(const State &state, double *rows)
+{
+  fill_contact_rows(state, rows, contact_columns(state.in.settings));
+}
 
 // One line: what was chosen for the scene.
 std::string describe(const Step &step);

@@ -53,12 +53,13 @@ void Step::change_materials(const std::vector<PairMaterial> &pairs, Mixing mixin
   change(changed);
 }
 
-void Step::change_walls(const std::vector<Wall> &walls)
+void Step::change_walls(std::size_t kept, std::span<const Wall> others)
 {
   Settings changed = settings_;
-  changed.walls = walls;
+  changed.walls.resize(kept);
+  changed.walls.insert(changed.walls.end(), others.begin(), others.end());
   change(changed);
-  state_.obstacles = Obstacles(settings_);
+  state_.obstacles.change(settings_, kept);
 }
 
 void Step::change(const Settings &wanted)

@@ -81,8 +81,8 @@ class Step {
   // Materials by pair of types, from the next step on. Raises Error if contacts have friction or restitution now and
   // had none before, or the other way round.
   void change_materials(const std::vector<PairMaterial> &pairs, Mixing mixing);
-  // The walls, from the next step on, as they are then. Raises Error likewise.
-  void change_walls(const std::vector<Wall> &walls);
+  // Walls behind the first `kept`, from the next step on, as they are then. Raises Error likewise.
+  void change_walls(std::size_t kept, std::span<const Wall> others);
 
   const StepReport &report() const { return report_; }
   const Settings &settings() const { return settings_; }

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What fix wall/nscd asks of a region and of the grains beside it. Functions raise nscd::Error, on all ranks.
+#pragma once
+
+#include "obstacle/obstacle.hpp"
+#include "region_tree.hpp"
+
+namespace LAMMPS_NS {
+
+class RegionChecks : protected Pointers {
+ public:
+  RegionChecks(LAMMPS *lmp, const RegionTree &tree) : Pointers(lmp), tree_(tree) {}
+
+  // Grains of both groups, with parts placed where they are `time` (s) after the start of the last step: their centres
+  // are where the region's surface can hold them. `fix`: the wall's ID.
+  void require_inside(int group, int group_of_wall, double time, const char *fix) const;
+  // LAMMPS has a shape whose normals are not those of its surface (the ends of a cone along y).
+  void require_true_normals(const nscd::Obstacle &wall) const;
+  // A grain at a periodic face touches the wall on this side of it alone.
+  void require_repeats(const nscd::Obstacle &wall) const;
+
+ private:
+  double largest_radius() const;
+
+  const RegionTree &tree_;
+};
+
+}    // namespace LAMMPS_NS
