@@ -77,6 +77,19 @@ def test_step_changes_where_it_is_defined(tmp_path: Path) -> None:
     assert "variable dt index 3e-5   # was 1e-6: as asked for" in asked.text
 
 
+def test_every_step_changes_where_there_are_several(tmp_path: Path) -> None:
+    text = (
+        SCENE + PAIRS["hooke"] + "\nfix g all gravity 9.81 vector 0 0 -1" + TAIL + "timestep 2e-6\nrun 1000\ntimestep 0"
+    )
+    conversion = converted(text, tmp_path)
+    assert [line for line in new_lines(conversion) if "timestep" in line] == [
+        "timestep 5e-5 # was 1e-6: 50 times that",
+        "timestep 1e-4 # was 2e-6: 50 times that",
+    ]
+    assert "run 1000 counts steps: as long in time are now 20" in conversion.listing
+    assert ["timestep 0: no number above 0" in note.text for note in conversion.left_out] == [True]
+
+
 def test_steps_are_bounded_by_what_flows_allow() -> None:
     class Seen:
         diameter, gravity, speed = 1e-3, 9.81, None
@@ -194,6 +207,8 @@ def test_elastic_gas_is_not_worth_it(tmp_path: Path) -> None:
         (PAIRS["hooke"] + "\nfix w all wall/gran zplane 0 2e3 50 0.5", "no model 'zplane'"),
         (PAIRS["hooke"] + f"\n{WALL}zplane 0", "'zplane' is no wall with all its numbers"),
         (PAIRS["hooke"] + f"\n{WALL}zplane 0 NULL turn", "'turn' is no keyword"),
+        (PAIRS["hooke"] + "\ntimestep", "line 13: 'timestep' lacks words"),
+        (PAIRS["hooke"] + "\nfix p all pour 3 1 5 diam", "line 13: .* lacks words"),
     ],
 )
 def test_bad_scripts_are_refused(text: str, message: str, tmp_path: Path) -> None:
@@ -230,6 +245,7 @@ def test_command_lists_and_writes(tmp_path: Path, monkeypatch: Any, capsys: Any)
     [
         (["in.none"], "there is no script 'in.none'"),
         (["in.soft", "--write", "in.soft"], "would overwrite the script"),
+        (["in.soft", "--variable", "a b", "1"], "--variable a b: a name has letters"),
         (["in.soft", "--diameter", "-1"], "--diameter -1 should be above 0"),
     ],
 )

@@ -8,6 +8,7 @@ stays as it is; --write writes the new one.
 """
 
 import argparse
+import re
 from pathlib import Path
 
 from nscd_lmp.commands._script_run import ScriptError
@@ -50,6 +51,9 @@ def main(arguments: argparse.Namespace) -> None:
         value = getattr(arguments, name)
         if value is not None and not value > 0:
             raise ScriptError(f"--{name} {value:g} should be above 0")
+    for name, _ in arguments.variable:
+        if not re.fullmatch(r"\w+", name):
+            raise ScriptError(f"--variable {name}: a name has letters, digits and underscores alone")
     known = Known(arguments.diameter, arguments.density, arguments.mass, arguments.speed, arguments.timestep)
     conversion = convert(script, dict(arguments.variable), known)
     print(conversion.listing)

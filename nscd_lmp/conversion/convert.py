@@ -75,7 +75,7 @@ class _Converter:
         self.model: ContactModel | None = None  # of a pair style that has one for all pairs
         self.contacts: list[tuple[Command, list[Word], ContactModel, bool]] = []
         self.integrators: list[Command] = []
-        self.step: Command | None = None
+        self.steps: list[tuple[Command, float | None]] = []
         commands = commands_of(lines)
         for command in commands:
             try:
@@ -83,6 +83,8 @@ class _Converter:
             except NscdError as error:
                 text = str(error)
                 raise NscdError(text if text.startswith("line ") else f"line {command.first}: {text}") from None
+            except (IndexError, ValueError):
+                raise NscdError(f"line {command.first}: '{command.text}' lacks words, or has wrong ones") from None
         if not self.pair_styles:
             raise NscdError(
                 "nothing to convert: the script has no pair_style gran/hooke, gran/hooke/history, gran/hertz/history or"
@@ -108,7 +110,7 @@ class _Converter:
         elif words[0] == "pair_coeff" and self.hybrid:
             self.conversion.leave_out(command, "a pair_coeff of pair_style hybrid")
         elif words[0] == "timestep":
-            self.step = command
+            self.steps.append((command, self.variables.number(words[1])))
         elif words[0] == "fix" and len(words) > 3 and words[3].startswith("wall/gran"):
             self._read_wall(command)
         elif words[0] == "fix" and len(words) > 3 and SUFFIX.sub("", words[3]) == "nve/sphere":
@@ -225,8 +227,11 @@ class _Converter:
         self.conversion.change(command, command.replaced(new))
 
     def _write_step(self, commands: list[Command], known: Known) -> None:
-        if self.step is None:
+        if not self.steps:
             self.conversion.remark(None, "no timestep in the script: see docs/how_large_a_step.md for one")
             return
-        times = change_step(self.step, self.variables, self.grains, self.conversion, known.timestep)
+        times = {
+            command.first: change_step(command, soft, self.variables, self.grains, self.conversion, known.timestep)
+            for command, soft in self.steps
+        }
         note_counted_steps(commands, self.conversion, times)

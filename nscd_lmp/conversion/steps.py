@@ -49,15 +49,28 @@ def proposed(soft: float, grains: Grains) -> tuple[float, str]:
 
 
 def change_step(
-    command: Command, variables: Variables, grains: Grains, conversion: Conversion, wanted: float | None
+    command: Command,
+    soft: float | None,
+    variables: Variables,
+    grains: Grains,
+    conversion: Conversion,
+    wanted: float | None,
 ) -> float:
-    """Change the step where it is defined; return the new one over the old one, 1 if it stays."""
+    """Change a step where it is defined; return the new one over the old one, 1 if it stays.
+
+    Parameters
+    ----------
+    command : Command
+        ``timestep``.
+    soft : float, optional
+        Its value, as far as it is known, s.
+    wanted : float, optional
+        What the user asks for, s.
+    """
     raw = command.words[1]
-    soft = variables.number(raw)
-    if soft is None:
-        conversion.leave_out(
-            command, f"timestep {raw}: its value is not known before the run; see docs/how_large_a_step.md"
-        )
+    if soft is None or soft <= 0:
+        text = f"timestep {raw}: no number above 0 before the run; docs/how_large_a_step.md has what to take"
+        conversion.leave_out(command, text)
         return 1.0
     new, reason = (wanted, "as asked for") if wanted else proposed(soft, grains)
     if new == soft:
@@ -80,22 +93,30 @@ def change_step(
     return new / soft
 
 
-def note_counted_steps(commands: list[Command], conversion: Conversion, times: float) -> None:
-    """Say what the commands that count steps are with steps that are so many times as long."""
-    if times == 1:
-        return
+def note_counted_steps(commands: list[Command], conversion: Conversion, times: dict[int, float]) -> None:
+    """Say what the commands that count steps are with steps that are longer.
+
+    Parameters
+    ----------
+    times : dict
+        How many times as long they are from a line on; the first holds before it, too.
+    """
+    longer = next(iter(times.values()))
     for command in commands:
+        longer = times.get(command.first, longer)
+        if longer == 1:
+            continue
         words = command.words
         at = COUNTED.get(words[0])
         if at is not None and len(words) > at:
             if words[at].isdigit() and int(words[at]) > 1:
-                count = max(1, round(int(words[at]) / times))
+                count = max(1, round(int(words[at]) / longer))
                 conversion.remark(command, f"{words[0]} {words[at]} counts steps: as long in time are now {count}")
             elif "$" in words[at]:
                 conversion.remark(command, f"{words[0]} counts steps by {words[at]}: see that it follows the new step")
         elif words[0] == "variable" and words[2:3] == ["equal"] and _turns_by_steps(command.text):
             conversion.remark(
-                command, f"variable {words[1]} changes with each step, and now {times:.3g} times as slowly in time"
+                command, f"variable {words[1]} changes with each step, and now {longer:.3g} times as slowly in time"
             )
 
 
