@@ -24,7 +24,7 @@ ROOMS = (
     ("problems",),
     ("door",),
     ("sweeps",),
-    ("charts", "atlas"),
+    ("charts", "atlas", "conversion"),
     ("commands",),
     ("cli", "__init__"),
     ("__main__",),
