@@ -19,10 +19,9 @@ string(REGEX MATCH "^([0-9]+)\\.([0-9]+)\\.([0-9]+)" unused "${lammps_release}")
 math(EXPR lammps_number "${CMAKE_MATCH_1} * 10000 + ${CMAKE_MATCH_2} * 100 + ${CMAKE_MATCH_3}")
 
 # Its name must not end in plugin.so: LAMMPS would load it as a plugin of its own.
-add_library(fix_nscd MODULE nscd_lmp/plugin/register_fix.cpp nscd_lmp/plugin/fix_nscd.cpp
-            nscd_lmp/plugin/contact_list.cpp nscd_lmp/plugin/mpi_ranks.cpp nscd_lmp/plugin/pair_nscd.cpp
-            nscd_lmp/plugin/region_checks.cpp nscd_lmp/plugin/region_tree.cpp nscd_lmp/plugin/region_wall.cpp
-            nscd_lmp/plugin/restart.cpp nscd_lmp/plugin/scene_checks.cpp nscd_lmp/plugin/variable_course.cpp nscd_lmp/plugin/wall_nscd.cpp)
+file(GLOB plugin_sources CONFIGURE_DEPENDS nscd_lmp/plugin/*.cpp)
+list(FILTER plugin_sources EXCLUDE REGEX "/plugin\\.cpp$")
+add_library(fix_nscd MODULE ${plugin_sources})
 target_include_directories(fix_nscd SYSTEM PRIVATE ${lammps_include} ${mpi_include})
 target_link_libraries(fix_nscd PRIVATE nscd_core)
 export_only(fix_nscd nscd_register_fix)

@@ -60,7 +60,8 @@ void require_no_materials(const nscd::Settings &settings)
 
 }    // namespace
 
-FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks_(world), checks_(lmp, this, ranks_)
+FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks_(world), checks_(lmp, this, ranks_),
+    lost_(lmp, ranks_)
 {
   time_integrate = 1;
   dynamic_group_allow = 1;
@@ -368,7 +369,8 @@ nscd::PairList FixNscd::pairs()
 void FixNscd::final_integrate()
 {
   if (neighbor->ago == 0 || steps_ == 0) {
-    or_stop(error, id, [&] { checks_.require_all_grains(); });
+    const std::string left = or_stop(error, id, [&] { return lost_.check(); });
+    if (!left.empty() && comm->me == 0) error->warning(FLERR, "Fix nscd {}: {}", id, left);
     find_homes();
     or_stop(error, id, [&] {
       checks_.require_sole_integrator();

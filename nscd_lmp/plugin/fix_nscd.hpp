@@ -2,6 +2,7 @@
 // fix nscd: the script door. LAMMPS arrays in, velocities out; no numerics.
 #pragma once
 
+#include "lost_grains.hpp"
 #include "mpi_ranks.hpp"
 #include "restart.hpp"
 #include "scene/wall_touches.hpp"
@@ -61,6 +62,7 @@ class FixNscd : public Fix {
 
   nscd::MpiRanks ranks_;
   SceneChecks checks_;
+  LostGrains lost_;
   nscd::Settings keywords_;             // its own, without what the pair style and fixes wall/nscd add
   std::unique_ptr<nscd::Step> step_;
   class NeighList *list_ = nullptr;

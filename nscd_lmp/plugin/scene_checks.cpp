@@ -53,15 +53,6 @@ void SceneChecks::require_spheres(bool frictional) const
   if (utils::strmatch(update->integrate_style, "^respa")) nscd::fail("it needs run_style verlet");
 }
 
-void SceneChecks::require_all_grains()
-{
-  double here = atom->nlocal;
-  ranks_.sum({&here, 1});
-  if (here != double(atom->natoms))
-    nscd::fail(atom->natoms - bigint(here), " of ", atom->natoms,
-               " grains left the box: close it with wall planes or boundary s or m, or take a smaller timestep");
-}
-
 void SceneChecks::require_sole_integrator()
 {
   for (Fix *other : modify->get_fix_list()) {

@@ -19,8 +19,7 @@ class SceneChecks : protected Pointers {
   SceneChecks(LAMMPS *lmp, class Fix *fix, nscd::MpiRanks &ranks) : Pointers(lmp), fix_(fix), ranks_(ranks) {}
 
   void require_spheres(bool frictional) const;
-  // At every new list: LAMMPS drops grains then, and then only, and atoms may have come in, or into groups.
-  void require_all_grains();
+  // At every new list: atoms may have come in, or into groups.
   void require_sole_integrator();
   void require_bonds_listed(const nscd::Grains &grains);
   // At a run's start.
