@@ -195,6 +195,7 @@ void FixNscd::init()
   });
   checks_.tell_of_other_fixes_nscd();
   checks_.tell_of_soft_contacts();
+  checks_.tell_of_soft_walls();
   checks_.tell_of_forgotten_walls(step_->settings());
   if (materials_doubted_) return;
   materials_doubted_ = true;

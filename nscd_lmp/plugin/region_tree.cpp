@@ -34,6 +34,15 @@ class Flipped {
   int flip_;
 };
 
+// A point on the surface has no direction from it.
+bool is_surface(const Region::Contact &c, int feature, RegionSurface &surface)
+{
+  if (!(c.r > 0)) return false;
+  const double inverse = 1 / c.r;
+  surface = {feature, c.r, {c.delx * inverse, c.dely * inverse, c.delz * inverse}};
+  return true;
+}
+
 }    // namespace
 
 RegionTree::RegionTree(Region *region) : region_(region)
@@ -110,9 +119,10 @@ void RegionTree::find(const Node &node, const double *point, double cutoff, bool
   if (node.parts.empty()) {
     const Flipped flip(node.region, flipped);
     const int count = node.region->surface(point[0], point[1], point[2], cutoff);
+    RegionSurface surface;
     for (int k = 0; k < count; ++k) {
       const Region::Contact &c = node.region->contact[k];
-      if (c.r > 0) found.push_back({node.first_feature + c.iwall, c.r, {c.delx / c.r, c.dely / c.r, c.delz / c.r}});
+      if (is_surface(c, node.first_feature + c.iwall, surface)) found.push_back(surface);
     }
     return;
   }
@@ -154,12 +164,12 @@ const RegionTree::Node &RegionTree::leaf_of(int feature) const
 bool RegionTree::find_feature(const double *point, int feature, RegionSurface &found) const
 {
   const Node &leaf = leaf_of(feature);
-  static thread_local std::vector<RegionSurface> all;
   for (const bool flipped : {false, true}) {
-    all.clear();
-    find(leaf, point, everywhere, flipped, all);
-    for (const RegionSurface &surface : all)
-      if (surface.feature == feature) return found = surface, true;
+    const Flipped flip(leaf.region, flipped);
+    const int count = leaf.region->surface(point[0], point[1], point[2], everywhere);
+    for (int k = 0; k < count; ++k)
+      if (leaf.first_feature + leaf.region->contact[k].iwall == feature)
+        return is_surface(leaf.region->contact[k], feature, found);
     if (leaf.region->openflag) break;   // both sides have been asked
   }
   return false;

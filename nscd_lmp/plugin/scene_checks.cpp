@@ -91,10 +91,26 @@ void SceneChecks::tell_of_soft_contacts()
                    fix_->id, force->pair_match_ptr(pair));
 }
 
+// Smooth forces act from the start of a step on, as they are there: what springs give back they give too long.
+void SceneChecks::tell_of_soft_walls()
+{
+  for (Fix *other : modify->get_fix_list()) {
+    if (!utils::strmatch(other->style, "^wall/gran") || soft_walls_told_of_.count(other->id)) continue;
+    soft_walls_told_of_.insert(other->id);
+    if (comm->me == 0)
+      error->warning(FLERR,
+                     "Fix nscd {}: fix {} (style {}) is a soft wall, whose springs act a step late: grains leave it "
+                     "exp(2.5 dt/T) times as fast as they should, T = pi sqrt(m/kn) being its contact time, so keep "
+                     "the timestep dt below T/5; fix wall/nscd is a rigid wall, for any timestep",
+                     fix_->id, other->id, other->style);
+  }
+}
+
 void SceneChecks::tell_of_forgotten_walls(const nscd::Settings &settings) const
 {
   const bool of_scene = domain->get_region_by_id("nscd_scene") && input->variable->find("nscd_walls") >= 0;
-  if (of_scene && settings.walls.empty() && comm->me == 0)
+  const bool has_others = !modify->get_fix_by_style("^wall/").empty();
+  if (of_scene && settings.walls.empty() && !has_others && comm->me == 0)
     error->warning(FLERR,
                    "Fix nscd {} has no walls, and the scene was made with some: append ${{nscd_walls}} to its line, "
                    "if they are to hold grains",

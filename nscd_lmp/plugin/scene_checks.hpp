@@ -29,6 +29,7 @@ class SceneChecks : protected Pointers {
 
   void tell_of_other_fixes_nscd() const;
   void tell_of_soft_contacts();
+  void tell_of_soft_walls();
   // nscd_lmp.scene() leaves its walls in a variable; a fix that has none has forgotten them, or so it seems.
   void tell_of_forgotten_walls(const nscd::Settings &settings) const;
   // Again when atoms have come in; each fix once.
@@ -53,7 +54,7 @@ class SceneChecks : protected Pointers {
 
   class Fix *fix_;
   nscd::MpiRanks &ranks_;
-  std::set<std::string> holders_told_of_;   // IDs of fixes
+  std::set<std::string> holders_told_of_, soft_walls_told_of_;   // IDs of fixes
   bool told_of_soft_contacts_ = false;
 };
 
