@@ -5,6 +5,8 @@
 
 #include "contact/mechanics.hpp"
 
+#include <span>
+
 template <class Space>
 void push_by_hand(const nscd::Contact &c, const typename Space::Tangent &impulse, double spin_response,
                   std::span<nscd::Body> bodies, std::span<nscd::Vec4> spins)

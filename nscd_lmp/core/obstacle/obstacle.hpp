@@ -76,7 +76,7 @@ class ObstacleOf : public Obstacle {
 };
 
 // A contact with a wall has the number of wall and feature in place of its second atom, below 0.
-constexpr int most_walls = 1 << 16, most_features = 1 << 15;
+constexpr int most_walls = 1 << 9, most_features = 1 << 22;
 
 constexpr std::int32_t wall_code(int wall, int feature) { return -1 - (feature * most_walls + wall); }
 constexpr int wall_of(std::int32_t code) { return (-1 - code) % most_walls; }
