@@ -224,3 +224,22 @@ TEST(a_mesh_fits_scenes_in_the_plane_and_periodic_boxes_or_is_refused)
   edges.periodic[1] = false, edges.periodic[2] = true;
   CHECK_ERROR(box.require_repeats("wall 1", edges), "1.5 long");
 }
+
+// Tiles that share no edges, since each row is moved by a third of a tile, and whose corners floats have rounded.
+TEST(triangles_side_by_side_have_no_seams_either)
+{
+  Shape shape;
+  for (int row = -6; row < 6; ++row)
+    for (int k = -6; k < 6; ++k) {
+      const double x = 0.3 * (k + row / 3.0), y = 0.3 * row;
+      const auto point = [](double at, double up) { return Point{double(float(at)), double(float(up)), 0}; };
+      add_quad(shape, point(x, y), point(x + 0.3, y), point(x + 0.3, y + 0.3), point(x, y + 0.3));
+    }
+  const Mesh mesh = mesh_of(shape);
+  Random random(4);
+  for (int k = 0; k < 2000; ++k) {
+    const Vec4 centre{random(-0.9, 0.9), 0.3 * random(-4, 4), 0.2, 0};
+    const std::vector<Touch> found = touches(mesh, centre, 0.2, 0.2);
+    CHECK(found.size() == 1 && found[0].normal[2] == 1 && found[0].gap == 0);
+  }
+}

@@ -104,6 +104,28 @@ void LocalMinima::look_at(std::int32_t number)
   }
 }
 
+// Whether this nearest point of an edge or a vertex lies on a face over which the surface comes nearer still. So it is
+// where triangles lie side by side that share no edge: in a file of several parts, or with corners on another's side.
+bool LocalMinima::is_passed(const Vec4 &point) const
+{
+  const Vec4 apart = centre_ - point;
+  const double written = surface_.written;
+  const auto passes = [&](const MeshFace &face) {
+    Vec4 to = point - face.corner;
+    if (std::abs(dot(face.normal, to)) > written) return false;
+    to[3] = 1;
+    for (const Vec4 &inward : face.inward) {
+      const double at = dot(inward, to), ahead = dot(inward, apart);
+      if (at < -written || (at <= written && ahead <= written)) return false;
+    }
+    const Vec4 along = apart - face.normal * dot(face.normal, apart);
+    return dot(along, along) > written * written;
+  };
+  for (const std::int32_t face : left_.faces)
+    if (passes(surface_.faces[std::size_t(face)])) return true;
+  return false;
+}
+
 // The foot is not inside of the face of this side.
 void LocalMinima::look_at_edge(std::int32_t side)
 {
@@ -116,6 +138,7 @@ void LocalMinima::look_at_edge(std::int32_t side)
   const auto next = [&](std::int32_t of) { return surface_.sides[std::size_t(of)].next; };
   for (std::int32_t other = next(side); other != side; other = next(other))
     if (inside(other) > round_off) return;
+  if (is_passed(edge.start + edge.direction * along)) return;
   add(surface_.faces.size() + number);
 }
 
@@ -128,6 +151,7 @@ void LocalMinima::look_at_vertex(std::int32_t vertex)
     const double ahead = dot(from, along);
     if (ahead > 0 && ahead * ahead > surface_.round_off * surface_.round_off * dot(along, along)) return;
   }
+  if (is_passed(start)) return;
   add(surface_.faces.size() + surface_.edges.size() + std::size_t(vertex));
 }
 

@@ -26,6 +26,7 @@ class LocalMinima {
   void look_at(std::int32_t face);
   void look_at_edge(std::int32_t side);
   void look_at_vertex(std::int32_t vertex);
+  bool is_passed(const Vec4 &point) const;
   bool rises(std::int32_t face, const Foot &foot) const;
   bool rises_beyond(std::int32_t side, const Foot &foot) const;
   double inside(std::int32_t side) const;

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double joined_share = 1e-9;      // of the size: corners nearer than that are one
 constexpr double round_off_share = 1e-11;  // of the largest coordinate
+constexpr double written_share = 2e-7;     // of the largest coordinate: two that a float has rounded
 constexpr double flat_angle = 1e-6;        // rad
 
 // Of a side, the angle to the first other face that one meets when one turns from the face to its normal's side and to
@@ -48,6 +49,7 @@ Surface::Surface(std::span<const Triangle> triangles, const std::string &name)
   if (!(size2 > 0)) fail(name, ": all of its corners are one point");
   const double joined = std::max(joined_share * std::sqrt(size2), 1e-15 * largest);
   round_off = round_off_share * largest;
+  written = written_share * largest;
   Welded welded = weld(triangles, joined);
   vertices.swap(welded.vertices);
   faces.resize(triangles.size());

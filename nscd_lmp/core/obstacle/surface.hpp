@@ -61,6 +61,7 @@ struct Surface {
   AlignedVector<Vec4> vertices;   // m
   std::vector<std::int32_t> first_neighbor, neighbors;
   double round_off;   // m, of what is computed of its coordinates, and more
+  double written;     // m, of coordinates that were written to a file as floats
 
  private:
   void make_faces(const std::string &name, double joined);
