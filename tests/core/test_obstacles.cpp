@@ -8,9 +8,11 @@
 #include "scene/gap.hpp"
 #include "scene/slides.hpp"
 #include "step/report.hpp"
+#include "stl_files.hpp"
 #include "thread_ranks.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
 using nscd::Arguments;
@@ -143,14 +145,16 @@ TEST(a_new_kind_of_wall_is_a_choice_like_the_others)
 }
 
 // Of every kind: the normal is how the gap grows, distances are those of the nearest feature, features within reach are
-// found, and a wall that moves comes nearer by the velocity of its surface. Kinds are asked with some numbers.
+// found, and a wall that moves comes nearer by the velocity of its surface. Kinds are asked with some numbers and file.
 TEST(what_a_kind_of_wall_says_of_itself_holds)
 {
+  const std::string file = write_ascii(globe(1, 8, 5), "some.stl");
   for (const nscd::ObstacleEntry &kind : nscd::obstacle_kinds()) {
     const double some[] = {0.1, 0.2, 0.3, 5, 0.5, 0.25, 0.125, 0.4, 0.6, 0.7, 0.9, 1.1};
     std::vector<std::string> numbers;
     std::istringstream words{std::string(kind.words)};
-    for (std::string word; words >> word;) numbers.push_back(std::to_string(some[numbers.size()]));
+    for (std::string word; words >> word;)
+      numbers.push_back(word == "FILE" ? file : std::to_string(some[numbers.size()]));
     Arguments arguments(numbers);
     const auto wall = kind.read(arguments, "wall 1");
     CHECK(!numbers.empty() && arguments.done());
@@ -182,6 +186,7 @@ TEST(what_a_kind_of_wall_says_of_itself_holds)
       CHECK(!touches.empty() && near == std::vector<std::int32_t>{0});
     }
   }
+  std::filesystem::remove(file);
 }
 
 // Along a wall that curves towards the grain any plane is too far. A bead that slides through the lowest point of a
