@@ -34,7 +34,8 @@ void read_own_numbers(OwnMaterial &own, Arguments &words)
 
 void read_wall(Settings &settings, Arguments &words)
 {
-  const std::string name = "wall " + std::to_string(settings.walls.size() + 1);
+  std::string name = "wall ";
+  name += std::to_string(settings.walls.size() + 1);
   const auto shape = find_obstacle_kind(words.word()).read(words, name);
   WallOptions options(name);
   while (options.read(words)) {}
