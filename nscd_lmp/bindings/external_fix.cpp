@@ -53,7 +53,11 @@ void ExternalFix::begin_run(int first_call)
 {
   require_atoms();
   require_last();
-  require_walls_repeat(step_.settings().walls, box());
+  BoxEdges edges = box();
+  const double *radius = library_.per_atom<double>("radius");
+  for (int i = 0; i < setting("nlocal"); ++i) edges.radius = std::max(edges.radius, radius[i]);
+  if (ranks_) ranks_->max({&edges.radius, 1});
+  require_walls_repeat(step_.settings().walls, edges);
   find_list();
   homes_.clear();
   reach_.begin_run();
@@ -98,7 +102,8 @@ BoxEdges ExternalFix::box() const
   const double *low = library_.global<double>("boxlo"), *high = library_.global<double>("boxhi");
   const int *periodic = library_.global<int>("periodicity");
   BoxEdges box{{{high[0] - low[0], 0, 0}, {0, high[1] - low[1], 0}, {0, 0, high[2] - low[2]}},
-               {periodic[0] != 0, periodic[1] != 0, periodic[2] != 0}};
+               {periodic[0] != 0, periodic[1] != 0, periodic[2] && setting("dimension") == 3},
+               {low[0], low[1], low[2]}};
   const int *triclinic = library_.global<int>("triclinic");
   if (!triclinic || !*triclinic) return box;
   box.edge[1][0] = *library_.global<double>("xy");

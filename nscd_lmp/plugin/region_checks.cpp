@@ -15,21 +15,11 @@ using nscd::Vec4;
 
 namespace {
 
-// The k-th of points that fill the unit square or cube evenly (Roberts' sequences R2, R3).
-double share2(int k, int axis) { return std::fmod((k + 0.5) * (axis ? 0.5698402910 : 0.7548776662), 1.0); }
-double share3(int k, int axis)
+// The k-th of points that fill the unit cube evenly (Roberts' sequence R3).
+double share(int k, int axis)
 {
   constexpr double steps[] = {0.8191725134, 0.6710436067, 0.5497004779};
   return std::fmod((k + 0.5) * steps[axis], 1.0);
-}
-
-double nearest(const nscd::Obstacle &wall, const Vec4 &point, double within)
-{
-  std::vector<Touch> touches;
-  wall.touch(point, 0, within, touches);
-  double gap = within;
-  for (const Touch &touch : touches) gap = std::min(gap, touch.gap);
-  return gap;
 }
 
 }    // namespace
@@ -56,7 +46,7 @@ void RegionChecks::require_true_normals(const nscd::Obstacle &wall) const
   const double size = std::max({domain->xprd, domain->yprd, domain->zprd}), step = 1e-6 * size;
   for (int k = 0; k < points; ++k) {
     Vec4 at{};
-    for (int d = 0; d < 3; ++d) at[d] = domain->boxlo[d] + domain->prd[d] * share3(k, d);
+    for (int d = 0; d < 3; ++d) at[d] = domain->boxlo[d] + domain->prd[d] * share(k, d);
     touches.clear();
     wall.touch(at, 0, size, touches);
     for (const Touch &touch : touches) {
@@ -67,29 +57,4 @@ void RegionChecks::require_true_normals(const nscd::Obstacle &wall) const
                  "or use a mesh");
     }
   }
-}
-
-double RegionChecks::largest_radius() const
-{
-  double largest = 0;
-  for (int i = 0; i < atom->nlocal; ++i) largest = std::max(largest, atom->radius[i]);
-  MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, world);
-  return largest;
-}
-
-void RegionChecks::require_repeats(const nscd::Obstacle &wall) const
-{
-  constexpr int points = 256;
-  const double radius = largest_radius();
-  const Vec4 corner{domain->boxlo[0], domain->boxlo[1], domain->boxlo[2], 0};
-  const Vec4 edges[] = {
-      {domain->xprd, 0, 0, 0}, {domain->xy, domain->yprd, 0, 0}, {domain->xz, domain->yz, domain->zprd, 0}};
-  for (int d = 0; d < domain->dimension; ++d)
-    for (int k = 0; domain->periodicity[d] && k < points; ++k) {
-      const Vec4 at = corner + edges[(d + 1) % 3] * share2(k, 0) + edges[(d + 2) % 3] * share2(k, 1);
-      if (std::abs(nearest(wall, at, radius) - nearest(wall, at + edges[d], radius)) <= 1e-6 * radius) continue;
-      nscd::fail("region ", tree_.id(), " lies otherwise on the two sides of the box in ", "xyz"[d], ", in which the ",
-                 "box is periodic, and a grain there would miss a part of it: use a boundary that is not periodic, or ",
-                 "a region that ends a radius ahead of it or goes on beyond it");
-    }
 }

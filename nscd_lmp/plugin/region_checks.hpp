@@ -16,12 +16,8 @@ class RegionChecks : protected Pointers {
   void require_inside(int group, int group_of_wall, double time, const char *fix) const;
   // LAMMPS has a shape whose normals are not those of its surface (the ends of a cone along y).
   void require_true_normals(const nscd::Obstacle &wall) const;
-  // A grain at a periodic face touches the wall on this side of it alone.
-  void require_repeats(const nscd::Obstacle &wall) const;
 
  private:
-  double largest_radius() const;
-
   const RegionTree &tree_;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "region_wall.hpp"
 
+#include "obstacle/repeats.hpp"
+
 #include <cmath>
 #include <limits>
 
@@ -80,4 +82,9 @@ Vec4 RegionWall::velocity_at(const Vec4 &point, const Touch &touch) const
 double RegionWall::fastest(const Vec4 &point, double near) const
 {
   return tree_->fastest(poses_, Point(point).x, near);
+}
+
+void RegionWall::require_repeats(const std::string &name, const nscd::BoxEdges &box) const
+{
+  nscd::require_alike_at_faces(*this, name, box);
 }

@@ -23,9 +23,8 @@ class RegionWall final : public nscd::Obstacle {
   nscd::Vec4 velocity_at(const nscd::Vec4 &point, const nscd::Touch &touch) const override;
   double fastest(const nscd::Vec4 &point, double near) const override;
 
-  // Where grains are is asked of the box and its grains by fix wall/nscd.
-  void require_planar(const std::string &) const override {}
-  void require_repeats(const std::string &, const nscd::BoxEdges &) const override {}
+  void require_planar(const std::string &) const override {}   // faces across the plane are left out
+  void require_repeats(const std::string &name, const nscd::BoxEdges &box) const override;
 
  private:
   std::shared_ptr<const RegionTree> tree_;

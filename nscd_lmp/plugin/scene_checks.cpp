@@ -154,14 +154,17 @@ void SceneChecks::require_steps() const
     nscd::fail("rerun reads frames and takes no steps, so there are no contacts: unfix ", fix_->id, " before rerun");
 }
 
-void SceneChecks::require_walls_repeat(const nscd::Settings &settings) const
+void SceneChecks::require_walls_repeat(const nscd::Settings &settings)
 {
   const bool tilted = domain->triclinic;
-  nscd::require_walls_repeat(settings.walls,
-                             {{{domain->xprd, 0, 0},
-                               {tilted ? domain->xy : 0, domain->yprd, 0},
-                               {tilted ? domain->xz : 0, tilted ? domain->yz : 0, domain->zprd}},
-                              {domain->xperiodic != 0, domain->yperiodic != 0, domain->zperiodic != 0}});
+  nscd::BoxEdges box{{{domain->xprd, 0, 0},
+                      {tilted ? domain->xy : 0, domain->yprd, 0},
+                      {tilted ? domain->xz : 0, tilted ? domain->yz : 0, domain->zprd}},
+                     {domain->xperiodic != 0, domain->yperiodic != 0, domain->zperiodic && domain->dimension == 3}};
+  std::copy_n(domain->boxlo, 3, box.low);
+  for (int i = 0; i < atom->nlocal; ++i) box.radius = std::max(box.radius, atom->radius[i]);
+  ranks_.max({&box.radius, 1});
+  nscd::require_walls_repeat(settings.walls, box);
 }
 
 bool SceneChecks::lists_pairs(int bonds) const { return neighbor->special_flag[bonds] != 0; }

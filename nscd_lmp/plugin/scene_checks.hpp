@@ -24,7 +24,7 @@ class SceneChecks : protected Pointers {
   void require_bonds_listed(const nscd::Grains &grains);
   // At a run's start.
   void require_steps() const;
-  void require_walls_repeat(const nscd::Settings &settings) const;
+  void require_walls_repeat(const nscd::Settings &settings);
   void require_future_bonds_listed() const;
 
   void tell_of_other_fixes_nscd() const;

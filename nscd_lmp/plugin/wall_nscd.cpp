@@ -124,11 +124,7 @@ nscd::Wall FixWallNscd::begin_run()
 {
   auto shape = shape_in_run();
   step_ = update->ntimestep;
-  if (tree_) {
-    const RegionChecks checks(lmp, *tree_);
-    checks.require_true_normals(*shape);
-    checks.require_repeats(*shape);
-  }
+  if (tree_) RegionChecks(lmp, *tree_).require_true_normals(*shape);
   clear();
   if (variables_->is_given()) {
     variables_->begin_run(time_);

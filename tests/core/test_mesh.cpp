@@ -217,12 +217,20 @@ TEST(a_mesh_fits_scenes_in_the_plane_and_periodic_boxes_or_is_refused)
   const Mesh box = mesh_of(box_shape(2)), side = mesh_of(tube(1, 1, 12, 3));
   CHECK_ERROR(box.require_planar("wall 1"), "z component of");
   side.require_planar("wall 1");
-  nscd::BoxEdges edges{{{2.1, 0, 0}, {0, 1.9, 0}, {0, 0.5, 1.5}}, {true, false, false}};
-  box.require_repeats("wall 1", edges);
-  edges.periodic[1] = true;
-  CHECK_ERROR(box.require_repeats("wall 1", edges), "2 long along y");
-  edges.periodic[1] = false, edges.periodic[2] = true;
-  CHECK_ERROR(box.require_repeats("wall 1", edges), "1.5 long");
+}
+
+// In a box that ends a radius ahead of it, or which it crosses alike on both sides; not where it ends at a face.
+TEST(a_mesh_lies_alike_on_both_faces_of_a_periodic_box)
+{
+  const Mesh box = mesh_of(box_shape(2)), tube_along_z = mesh_of(tube(3, 4, 24, 8));
+  nscd::BoxEdges around{{{3, 0, 0}, {0, 9, 0}, {0, 0, 9}}, {true, false, false}, {-1.5, -4.5, -4.5}, 0.25};
+  box.require_repeats("wall 1", around);
+  around.radius = 0.75;
+  CHECK_ERROR(box.require_repeats("wall 1", around), "wall 1: it does not lie alike on the two faces of the box in x");
+  nscd::BoxEdges within{{{9, 0, 0}, {0, 9, 0}, {0, 0, 2}}, {false, false, true}, {-4.5, -4.5, -1}, 0.25};
+  tube_along_z.require_repeats("wall 1", within);
+  within.low[2] = 0.1;   // its end is at 2
+  CHECK_ERROR(tube_along_z.require_repeats("wall 1", within), "in z, in which the box is periodic");
 }
 
 // Tiles that share no edges, since each row is moved by a third of a tile, and whose corners floats have rounded.

@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "obstacle/kinds.hpp"
 #include "obstacle/local_minima.hpp"
+#include "obstacle/repeats.hpp"
 #include "obstacle/stl.hpp"
 
 #include <cmath>
@@ -81,20 +82,7 @@ void Mesh::require_planar(const std::string &name) const
 
 void Mesh::require_repeats(const std::string &name, const BoxEdges &box) const
 {
-  const auto edge = [&](int d) { return Vec4{box.edge[d][0], box.edge[d][1], box.edge[d][2], 0}; };
-  for (int d = 0; d < 3; ++d) {
-    if (!box.periodic[d]) continue;
-    const Vec4 normal = cross(edge((d + 1) % 3), edge((d + 2) % 3));
-    double low = INFINITY, high = -INFINITY;
-    for (const Vec4 &vertex : surface_.vertices) {
-      low = std::min(low, dot(vertex, normal));
-      high = std::max(high, dot(vertex, normal));
-    }
-    const double extent = (high - low) / length(normal), width = std::abs(dot(edge(d), normal)) / length(normal);
-    if (extent > width)
-      fail(name, ": it is ", extent, " long along ", "xyz"[d], ", in which the box is periodic and ", width,
-           " long: a mesh is not repeated with the box; use one that is shorter, or a boundary that is not periodic");
-  }
+  require_alike_at_faces(*this, name, box);
 }
 
 static std::shared_ptr<const Obstacle> read(Arguments &words, const std::string &name)

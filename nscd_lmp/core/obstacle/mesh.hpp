@@ -29,7 +29,7 @@ class Mesh final : public Obstacle {
   bool is_curved() const override { return true; }
   // No normal of a face may have a z component.
   void require_planar(const std::string &name) const override;
-  // It is not repeated with the box, so it may not be longer.
+  // It is not repeated with the box: it has to end ahead of its faces, or to go on beyond them.
   void require_repeats(const std::string &name, const BoxEdges &box) const override;
 
   const Surface &surface() const { return surface_; }

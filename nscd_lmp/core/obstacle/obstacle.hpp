@@ -21,7 +21,9 @@ namespace nscd {
 
 struct BoxEdges {
   double edge[3][3];    // vectors along the box' edges, m
-  bool periodic[3];
+  bool periodic[3];     // along z never, where grains lie in a plane
+  double low[3] = {};   // its corner, m
+  double radius = 0;    // of the largest grain, m
 };
 
 // Of a sphere and a feature of a wall.
