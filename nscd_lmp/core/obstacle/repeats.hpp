@@ -8,8 +8,8 @@
 
 namespace nscd {
 
-// A grain at a periodic face touches the wall on this side of it alone. So within a radius of the largest grain the wall
-// has to lie alike on both faces; raises Error where it does not. `name`: "wall 2".
+// A grain at a periodic face touches the wall on this side of it alone. So within a radius of the largest grain the
+// wall has to lie alike on both faces; raises Error where it does not. `name`: "wall 2".
 void require_alike_at_faces(const Obstacle &wall, const std::string &name, const BoxEdges &box);
 
 }    // namespace nscd
