@@ -47,8 +47,8 @@ void require_alike_at_faces(const Obstacle &wall, const std::string &name, const
       const auto here = near(wall, at, box.radius), there = near(wall, at + edge(d), box.radius);
       if (are_among(here, there, box.radius) && are_among(there, here, box.radius)) continue;
       fail(name, ": it does not lie alike on the two faces of the box in ", "xyz"[d], ", in which the box is ",
-           "periodic, and a grain there would miss a part of it: use a boundary that is not periodic, or a wall that ends a ",
-           "radius ahead of the faces or goes on alike by a radius beyond them");
+           "periodic, and a grain there would miss a part of it: use a boundary that is not periodic, or a wall that ",
+           "ends a radius ahead of the faces or goes on alike by a radius beyond them");
     }
 }
 
