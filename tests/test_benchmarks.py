@@ -139,6 +139,20 @@ FILES = {
             "cpu_seconds",
         }
     },
+    "mesh_drum": {
+        "mesh_drum.csv": {
+            "kind",
+            "grains",
+            "seed",
+            "dt",
+            "angle",
+            "angle_error",
+            "torque",
+            "torque_error",
+            "overlap",
+            "cpu_seconds",
+        }
+    },
     "drum_angle": {
         "drum_angle.csv": {
             "kind",
