@@ -58,6 +58,14 @@ void require_no_materials(const nscd::Settings &settings)
                " ", written(settings.pairs[0].own), "` in place of keyword material");
 }
 
+// Of LAMMPS' or of files, which the core knows nothing of.
+void require_own_kinds_of_walls(const std::vector<std::string> &words)
+{
+  for (std::size_t k = 0; k + 1 < words.size(); ++k)
+    if (words[k] == "wall" && (words[k + 1] == "region" || words[k + 1] == "mesh"))
+      nscd::fail("a wall by ", words[k + 1], " has a fix of its own: `fix ID group wall/nscd ", words[k + 1], " ...`");
+}
+
 }    // namespace
 
 FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks_(world), checks_(lmp, this, ranks_)
@@ -76,6 +84,7 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks
   restart_global = restart_peratom = 1;
 
   or_stop(error, id, [&] {
+    require_own_kinds_of_walls({arg + 3, arg + narg});
     nscd::parse_keywords(keywords_, {arg + 3, arg + narg});
     require_own_walls_stand();
     nscd::Settings settings = with_pair(keywords_);
