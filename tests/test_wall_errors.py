@@ -137,7 +137,9 @@ def test_regions_that_are_no_walls(region, words, message):
 
 @pytest.mark.parametrize("part", ["sphere 0 0 0 v_size", "ellipsoid 0 0 0 1 2 3"])
 def test_parts_of_regions_are_looked_at(part):
-    said = refused(f"region a {part}", "region b sphere 0 0 0 1", "region r union 2 a b", "fix w all wall/nscd region r")
+    said = refused(
+        f"region a {part}", "region b sphere 0 0 0 1", "region r union 2 a b", "fix w all wall/nscd region r"
+    )
     assert said.startswith("Fix wall/nscd w: region a ")
 
 
@@ -150,7 +152,8 @@ def test_a_cone_along_y_with_ends():
     said = refused("region r cone y 0 0 0.3 1 -1 1", "fix w all wall/nscd region r", "run 0")
     assert said.startswith("Fix nscd hard: LAMMPS gives a surface of region r near (")
     assert said.endswith(
-        ") a normal that is not perpendicular to it, as it does at the ends of a cone along y: turn the scene, or use a mesh"
+        ") a normal that is not perpendicular to it, as it does at the ends of a cone along y: turn the scene, or use a "
+        "mesh"
     )
 
 
@@ -163,14 +166,18 @@ def test_grains_on_the_wrong_side_of_a_region(region):
 
 
 def test_grains_of_another_group_may_be_on_the_wrong_side():
-    lmp = walled(grains([[0, 0, 0], [2, 0, 0]], 0.1, 2.0), "group one id 1", "fix hard all nscd", "region r sphere 0 0 0 1")
+    lmp = walled(
+        grains([[0, 0, 0], [2, 0, 0]], 0.1, 2.0), "group one id 1", "fix hard all nscd", "region r sphere 0 0 0 1"
+    )
     lmp.commands_list(["fix w one wall/nscd region r", "run 10"])
     lmp.close()
 
 
 def test_grains_on_the_wrong_side_of_a_plane():
     said = refused("fix w all wall/nscd zplane 0.3 NULL", "run 1")
-    assert said.startswith("Fix nscd hard: grain 1 is 0.3 inside fix w, more than its radius 0.1: start it on the side ")
+    assert said.startswith(
+        "Fix nscd hard: grain 1 is 0.3 inside fix w, more than its radius 0.1: start it on the side "
+    )
 
 
 @pytest.mark.parametrize("wall", ["zplane -1 NULL", "region r"])

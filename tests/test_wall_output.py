@@ -24,7 +24,10 @@ def bed(count=60, seed=1):
 
 
 BOXES = {
-    "slabs": ["fix w1 all wall/nscd xplane -0.5 0.5", "fix w2 all wall/nscd yplane -0.5 0.5", "fix w3 all wall/nscd zplane 0 NULL"],
+    "slabs": [
+        *("fix w1 all wall/nscd xplane -0.5 0.5", "fix w2 all wall/nscd yplane -0.5 0.5"),
+        "fix w3 all wall/nscd zplane 0 NULL",
+    ],
     "region": ["region r block -0.5 0.5 -0.5 0.5 0 5", "fix w1 all wall/nscd region r"],
     "cylinder": ["fix w1 all wall/nscd zcylinder 0.71", "fix w2 all wall/nscd plane 0 0 0 0 0 1"],
     "bowl": ["region r sphere 0 0 2 2", "fix w1 all wall/nscd region r"],
@@ -145,7 +148,9 @@ def test_motion_is_told_at_the_end_of_the_step():
     way = [0.2 * (1 - math.cos(4 * math.pi * t)) for t in (0.099, 0.1)]
     assert numbers(lmp, SHIFT) == pytest.approx([way[1], 0, 0])
     assert numbers(lmp, VELOCITY) == pytest.approx([(way[1] - way[0]) / 1e-3, 0.3, 0])
-    assert numbers(lmp, ANGLE, 1)[0] == pytest.approx(0.05 * math.pi) and numbers(lmp, RATE, 1)[0] == pytest.approx(math.pi / 2)
+    assert numbers(lmp, ANGLE, 1)[0] == pytest.approx(0.05 * math.pi) and numbers(lmp, RATE, 1)[0] == pytest.approx(
+        math.pi / 2
+    )
     assert numbers(lmp, SHIFT, 3, "v") == pytest.approx([0.01, 0, 0])
     assert numbers(lmp, VELOCITY, 3, "v") == pytest.approx([0.1, 0, 0])
     assert numbers(lmp, ANGLE, 1, "v")[0] == pytest.approx(0.3) and numbers(lmp, RATE, 1, "v")[0] == pytest.approx(3)

@@ -37,7 +37,10 @@ SHAPES = {
     "union": [SPHERE, BLOCK, "region r union 2 a b"],
     "intersection": [SPHERE, "region b block -0.2 1 -0.6 0.6 -0.6 0.6", "region r intersect 2 a b"],
     "intersection, outside": [SPHERE, "region b block -0.2 1 -0.6 0.6 -0.6 0.6", "region r intersect 2 a b side out"],
-    "block with a hole": ["region a block -1 1 -1 1 -1 1", "region b sphere 0 0 0 0.5 side out", "region r intersect 2 a b"],
+    "block with a hole": [
+        *("region a block -1 1 -1 1 -1 1", "region b sphere 0 0 0 0.5 side out"),
+        "region r intersect 2 a b",
+    ],
     "intersection with a union": [
         "region a block -1 1 -1 1 -1 1",
         "region b sphere 0 0 0 0.5 side out",
@@ -185,7 +188,9 @@ def test_a_funnel_lets_grains_through():
     """A cone with open ends: none is stuck in its wall, all come out below."""
     x = np.array([[0.25 * i, 0.25 * j, 0.9] for i in (-1, 0, 1) for j in (-1, 0, 1)])
     lmp = walled(grains(x, R, MASS), "region funnel cone z 0 0 0.35 1 0 1 open 1 open 2", dt=2e-3, box=4.0)
-    lmp.commands_list(["fix hard all nscd", "fix w all wall/nscd region funnel", "fix floor all wall/nscd zplane -3 NULL"])
+    lmp.commands_list(
+        ["fix hard all nscd", "fix w all wall/nscd region funnel", "fix floor all wall/nscd zplane -3 NULL"]
+    )
     largest = series(lmp, 1000, lambda lmp: lmp.extract_fix("hard", 0, 1, 9), every=10)
     assert largest.max() < 5e-4
     assert (state(lmp)[0][:, 2] < -1).all()
@@ -195,7 +200,9 @@ def test_a_funnel_lets_grains_through():
 def test_in_a_plane_the_faces_of_a_block_across_z_are_none():
     ball = grains([0, -1 + R, 0], R, MASS, v=[0.5, 0, 0])
     lmp = walled(ball, "region r block -1 1 -1 1 -0.05 0.05", gravity=(0, -GRAVITY, 0), boundary="f f p", dimension=2)
-    lmp.commands_list(["fix flat all enforce2d", "fix hard all nscd friction 0.5", "fix w all wall/nscd region r", "run 200"])
+    lmp.commands_list(
+        ["fix flat all enforce2d", "fix hard all nscd friction 0.5", "fix w all wall/nscd region r", "run 200"]
+    )
     x, v = state(lmp)
     assert x[0, 1:] == pytest.approx([-1 + R, 0], abs=1e-9)
     assert v[0] == pytest.approx([0.5 / 1.5, 0, 0], rel=1e-3)  # a disc: 1/2 m r^2

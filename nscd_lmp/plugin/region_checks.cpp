@@ -89,7 +89,7 @@ void RegionChecks::require_repeats(const nscd::Obstacle &wall) const
       const Vec4 at = corner + edges[(d + 1) % 3] * share2(k, 0) + edges[(d + 2) % 3] * share2(k, 1);
       if (std::abs(nearest(wall, at, radius) - nearest(wall, at + edges[d], radius)) <= 1e-6 * radius) continue;
       nscd::fail("region ", tree_.id(), " lies otherwise on the two sides of the box in ", "xyz"[d], ", in which the ",
-                 "box is periodic, and a grain there would miss a part of it: use a boundary that is not periodic, or a ",
-                 "region that ends a radius ahead of the box' face or goes on beyond it");
+                 "box is periodic, and a grain there would miss a part of it: use a boundary that is not periodic, or ",
+                 "a region that ends a radius ahead of the box' face or goes on beyond it");
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The motion of a wall by variables of LAMMPS: `move v_x v_y v_z`, `rotate v_theta x y z ax ay az`, as regions have them.
+// The motion of a wall by variables of LAMMPS: `move v_x v_y v_z`, `rotate v_theta x y z ax ay az`, as of regions.
 #pragma once
 
 #include "obstacle/course.hpp"

@@ -142,7 +142,8 @@ std::shared_ptr<const nscd::Obstacle> FixWallNscd::shape_in_run()
   if (region_id_.empty()) return shape_;
   Region *region = domain->get_region_by_id(region_id_);
   if (!region)
-    nscd::fail(name_of(id), ": region ", region_id_, " is not there any more: unfix ", id, ", or define the region again");
+    nscd::fail(name_of(id), ": region ", region_id_, " is not there any more: unfix ", id,
+               ", or define the region again");
   region->init();
   tree_ = std::make_shared<RegionTree>(region);
   tree_->begin_run();

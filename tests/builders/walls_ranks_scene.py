@@ -10,7 +10,10 @@ from scenes import cloud
 from walled import numbers, walled
 
 CASES = {
-    "drum": ["fix w all wall/nscd ycylinder 0.95 rotate 4 0 0 0 0 1 0 contacts", "fix ends all wall/nscd yplane -0.6 0.6"],
+    "drum": [
+        "fix w all wall/nscd ycylinder 0.95 rotate 4 0 0 0 0 1 0 contacts",
+        "fix ends all wall/nscd yplane -0.6 0.6",
+    ],
     "box": [
         "variable x equal 0.05*sin(10*step*dt)",
         "region r block -0.6 0.6 -0.6 0.6 -1 3 move v_x NULL NULL",
