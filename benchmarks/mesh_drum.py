@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A drum that turns, as an exact cylinder, as a region of LAMMPS and as a mesh of triangles.
 
-Grains with friction 0.5 in a smooth drum, periodic along its axis, once round a second. The angle is that of the line from
-the middle of the drum to the centre of mass, from the vertical; the torque that of the grains on the drum over their
+Grains with friction 0.5 in a smooth drum, periodic along its axis, one turn a second. The angle is that of the line
+from the middle of the drum to the centre of mass, from the vertical; the torque that of the grains on the drum over their
 weight times its radius. Both are means from half a second on; `angle_error` and `torque_error` are those of the means,
 from ten parts of the time. `overlap` is the largest one of the looks, over the radius.
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from pages import blocks
-from soft_scripts import PAIRS, SCENE, TAIL, converted, lmp, new_lines, pair_lines, run_lammps
+from soft_scripts import PAIRS, SCENE, TAIL, D, converted, lmp, new_lines, pair_lines, run_lammps
 
 from nscd_lmp.conversion.convert import Known, convert
 
@@ -141,3 +141,39 @@ def test_page_shows_what_the_command_says(tmp_path: Path) -> None:
     assert [line for line in new_lines(walls) if "wall/" in line] == [
         " ".join(line.split()) for line in new.splitlines()
     ]
+
+
+DRUM = (
+    SCENE.replace("boundary p p p", "boundary f f f")
+    + f"""create_atoms 1 single 0.05 0.05 {0.05 + 3 * D}
+set group all diameter {D} density 2500
+variable theta equal 3.0*step*dt
+region drum cylinder y 0.05 0.05 0.03 0 0.1 rotate v_theta 0.05 0.05 0.05 0 1 0
+pair_style gran/hooke/history 1e4 NULL 1e5 NULL 0.5 1
+pair_coeff * *
+fix g all gravity 9.81 vector 0 0 -1
+fix drum all wall/gran/region granular hooke 1e4 1e5 damping mass_velocity &
+  tangential linear_history 1e4 1 0.5 region drum
+fix floor all wall/gran hooke/history 1e4 NULL 1e5 NULL 0.5 1 zplane 0.021 NULL wiggle z 1e-3 0.2 contacts
+fix move all nve/sphere
+timestep 1e-6
+run 10
+"""
+)
+
+
+def test_converted_walls_hold_and_move_grains(tmp_path: Path) -> None:
+    """A turning drum and a floor in it that shakes; the new script runs as long as it takes to rest on both."""
+    text = converted(DRUM, tmp_path).text
+    assert "wall/nscd region drum friction 0.5" in text and "wiggle z 1e-3 0.2 contacts" in text
+    asked = '\nrun 2000\nvariable f equal f_drum[7]+f_floor[7]\nprint "touch $(v_f) $(f_drum[14]) $(f_floor[10]>=0)"\n'
+    (tmp_path / "in.hard").write_text(text + asked)
+    told = re.findall(r"^touch (\S+) (\S+) (\S+)$", lmp("in.hard", tmp_path), re.M)
+    assert told and float(told[-1][0]) >= 1 and float(told[-1][1]) > 0
+
+
+def test_walls_that_the_page_shows_are_taken() -> None:
+    """Its block of converted walls, in a scene that has the drum."""
+    *_, new = [block.text for block in blocks(ROOT / "docs" / "from_pair_granular.md")]
+    scene = SCENE.replace("boundary p p p", "boundary f f f") + "region drum cylinder y 0.05 0.05 0.05 0 0.1\n"
+    run_lammps(scene + "pair_style nscd\npair_coeff * *\ntimestep 1e-5\nfix hard all nscd\n" + new + "run 10\n")

@@ -58,6 +58,14 @@ void require_no_materials(const nscd::Settings &settings)
                " ", written(settings.pairs[0].own), "` in place of keyword material");
 }
 
+// The core's alone: it knows no regions.
+void require_own_kinds_of_walls(const std::vector<std::string> &words)
+{
+  for (std::size_t k = 0; k + 1 < words.size(); ++k)
+    if (words[k] == "wall" && words[k + 1] == "region")
+      nscd::fail("a region has a fix of its own as a wall: `fix ID group wall/nscd region ...`");
+}
+
 }    // namespace
 
 FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks_(world), checks_(lmp, this, ranks_),
@@ -77,6 +85,7 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks
   restart_global = restart_peratom = 1;
 
   or_stop(error, id, [&] {
+    require_own_kinds_of_walls({arg + 3, arg + narg});
     nscd::parse_keywords(keywords_, {arg + 3, arg + narg});
     require_own_walls_stand();
     nscd::Settings settings = with_pair(keywords_);

@@ -58,6 +58,8 @@ int RegionTree::add(Region *region)
   } else {
     if (region->varshape)
       nscd::fail("region ", region->id, " has a size that varies: walls keep their shape; use `move`, or a mesh");
+    if (strcmp(region->style, "ellipsoid") == 0)   // its contact is the place on the surface, not the way from there
+      nscd::fail("region ", region->id, " is an ellipsoid, of which LAMMPS gives no normals: use a sphere or a mesh");
     node.first_feature = features_;
     features_ += region->cmax;
     is_open_ |= region->openflag != 0;

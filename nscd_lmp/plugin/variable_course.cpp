@@ -49,6 +49,8 @@ void VariableCourse::take_move(std::vector<std::string> &words, std::size_t firs
     if (!is_variable(word)) nscd::fail("move: '", word, "' is neither a variable, v_NAME, nor NULL");
     along_[d] = word.substr(2);
   }
+  if (along_[0].empty() && along_[1].empty() && along_[2].empty())
+    nscd::fail("move: all three are NULL: give a variable for one of them, or leave move out");
   words.erase(words.begin() + long(first), words.begin() + long(first + count));
 }
 
@@ -74,10 +76,12 @@ double VariableCourse::ask(const std::string &variable) const
   if (variable.empty()) return 0;
   Variable *const all = lmp_->input->variable;
   const int number = all->find(variable.c_str());
-  if (number < 0) nscd::fail("there is no variable ", variable, ": define it ahead of the run");
-  if (!all->equalstyle(number)) nscd::fail("variable ", variable, " is not of style equal");
+  if (number < 0) nscd::fail(name_, ": there is no variable ", variable, ": define it ahead of the run");
+  if (!all->equalstyle(number))
+    nscd::fail(name_, ": variable ", variable, " is not of style equal: a wall moves by one that is");
   const double value = all->compute_equal(number);
-  if (!std::isfinite(value)) nscd::fail("variable ", variable, " is ", value, ", which is no place and no angle");
+  if (!std::isfinite(value))
+    nscd::fail(name_, ": variable ", variable, " is ", value, ", which is no place and no angle");
   return value;
 }
 

@@ -15,7 +15,8 @@ namespace LAMMPS_NS {
 // Even within a step. Time counts from the fix's definition, as for its other motions.
 class VariableCourse final : public nscd::Course {
  public:
-  explicit VariableCourse(LAMMPS *lmp) : lmp_(lmp) {}
+  // `name`: what messages call the wall.
+  VariableCourse(LAMMPS *lmp, std::string name) : lmp_(lmp), name_(std::move(name)) {}
 
   // Takes such motions out of the words; raises nscd::Error for bad ones.
   void read(std::vector<std::string> &words);
@@ -26,6 +27,7 @@ class VariableCourse final : public nscd::Course {
   // Of length dt from that time on, s.
   void begin_step(double time, double dt);
   nscd::Place at(double time) const override;
+  bool shifts_along_z() const override { return !along_[2].empty(); }
 
  private:
   nscd::Place ask() const;
@@ -34,6 +36,7 @@ class VariableCourse final : public nscd::Course {
   void take_rotation(std::vector<std::string> &words, std::size_t first);
 
   LAMMPS *lmp_;
+  std::string name_;
   bool moves_ = false;
   std::string along_[3], angle_;   // names of variables; empty: none
   nscd::Place start_, end_;

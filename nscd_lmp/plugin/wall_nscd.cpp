@@ -27,15 +27,38 @@ constexpr int row_columns = 8;   // as fix wall/gran has them
 
 std::string name_of(const char *id) { return std::string("fix ") + id; }
 
+std::size_t count_words(std::string_view text) { return std::size_t(std::count(text.begin(), text.end(), ' ')) + 1; }
+
 // Adds the kinds that LAMMPS has to the list of ours that an error shows.
 std::shared_ptr<const nscd::Obstacle> read_shape(nscd::Arguments &words, const std::string &name)
 {
-  const std::string kind = words.word();
-  for (const nscd::ObstacleEntry &entry : nscd::obstacle_kinds())
-    if (entry.name == kind) return entry.read(words, name);
   std::string choices = "region";
-  for (const nscd::ObstacleEntry &entry : nscd::obstacle_kinds()) choices.append(", ").append(entry.name);
-  nscd::fail("unknown wall '", kind, "': choose one of ", choices);
+  for (const nscd::ObstacleEntry &entry : nscd::obstacle_kinds()) {
+    choices.append(", ").append(entry.name);
+    if (!words.skip(entry.name)) continue;
+    words.require(count_words(entry.words), std::string(entry.name) + " " + std::string(entry.words));
+    return entry.read(words, name);
+  }
+  nscd::fail("unknown wall '", words.word(), "': choose one of ", choices);
+}
+
+// The words that say where a wall is and how it moves: all but those of its contacts.
+std::string place_of(const std::vector<std::string> &words)
+{
+  std::string place;
+  for (std::size_t k = 1; k < words.size(); ++k) {
+    const std::string &word = words[k];
+    if (word == "friction" || word == "restitution" || word == "e_t") ++k;
+    else if (word != "stick" && word != "contacts") place += word + " ";
+  }
+  return place;
+}
+
+// Without the name in front, which the message has already.
+std::string without_name(const std::string &message, const std::string &name)
+{
+  const std::string front = name + ": ";
+  return message.rfind(front, 0) == 0 ? message.substr(front.size()) : message;
 }
 
 }    // namespace
@@ -49,17 +72,19 @@ std::vector<FixWallNscd *> LAMMPS_NS::walls_of(LAMMPS *lmp)
 }
 
 FixWallNscd::FixWallNscd(LAMMPS *lmp, int narg, char **arg) :
-    Fix(lmp, narg, arg), options_(name_of(arg[0])), variables_(std::make_shared<VariableCourse>(lmp))
+    Fix(lmp, narg, arg), options_(name_of(arg[0])),
+    variables_(std::make_shared<VariableCourse>(lmp, name_of(arg[0])))
 {
   vector_flag = 1;
   size_vector = columns;
   global_freq = 1;
   extvector = 0;
   restart_global = 1;
+  dynamic_group_allow = 1;
   try {
     read({arg + 2, arg + narg});
   } catch (const nscd::Error &refused) {
-    error->all(FLERR, "Fix wall/nscd {}: {}", id, refused.what());
+    error->all(FLERR, "Fix wall/nscd {}: {}", id, without_name(refused.what(), name_of(id)));
   }
   if (!wants_rows_) return;
   peratom_flag = 1;
@@ -73,15 +98,18 @@ FixWallNscd::~FixWallNscd() { memory->destroy(array_atom); }
 // `words` begin with the style, as errors name it.
 void FixWallNscd::read(std::vector<std::string> words)
 {
-  for (std::size_t k = 1; k < words.size(); ++k) words_ += (k > 1 ? " " : "") + words[k];
+  place_ = place_of(words);
   variables_->read(words);
   nscd::Arguments rest(words);
   rest.keyword();
   if (rest.done()) nscd::fail("give a wall: region ID, or a kind such as zplane lo hi");
-  if (rest.skip("region")) region_id_ = rest.word();
-  else shape_ = read_shape(rest, name_of(id));
+  if (rest.skip("region")) {
+    rest.require(1, "region ID");
+    region_id_ = rest.word();
+  } else shape_ = read_shape(rest, name_of(id));
   while (!rest.done()) {
-    if (rest.skip("contacts")) wants_rows_ = true;
+    if (!wants_rows_ && rest.skip("contacts")) wants_rows_ = true;
+    else if (wants_rows_ && rest.next_is("contacts")) nscd::fail("contacts is given twice: give it once");
     else if (!options_.read(rest)) nscd::refuse_own_word(rest.word(), "friction, restitution, e_t, contacts, wiggle, "
                                                         "shear, rotate, move");
   }
@@ -103,7 +131,7 @@ void FixWallNscd::init()
   for (const FixWallNscd *other : walls_of(lmp)) {
     if (other == this) return;
     const bool meets = other->groupbit == groupbit || other->groupbit == 1 || groupbit == 1;
-    if (other->words_ == words_ && meets)
+    if (other->place_ == place_ && meets)
       error->all(FLERR, "Fix wall/nscd {} is the same wall as fix {}, and grains would touch both: remove one", id,
                  other->id);
   }
@@ -113,7 +141,9 @@ std::shared_ptr<const nscd::Obstacle> FixWallNscd::shape_in_run()
 {
   if (region_id_.empty()) return shape_;
   Region *region = domain->get_region_by_id(region_id_);
-  if (!region) nscd::fail("region ", region_id_, " is not there any more: unfix the wall, or define the region again");
+  if (!region)
+    nscd::fail(name_of(id), ": region ", region_id_, " is not there any more: unfix ", id,
+               ", or define the region again");
   region->init();
   tree_ = std::make_shared<RegionTree>(region);
   tree_->begin_run();

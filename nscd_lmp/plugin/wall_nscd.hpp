@@ -34,8 +34,6 @@ class FixWallNscd : public Fix {
   void add(const nscd::WallTouch &touch);
   // Of the moving grains of a group: those that are on the side of the region where none can be.
   void require_inside(int group) const;
-  // Its words, to find a wall that is there twice.
-  const std::string &words() const { return words_; }
 
  private:
   void read(std::vector<std::string> words);
@@ -44,7 +42,7 @@ class FixWallNscd : public Fix {
   void clear_rows();
   std::array<double, 3> torque_point() const;
 
-  std::string words_, region_id_;                 // region: its ID, else empty
+  std::string place_, region_id_;                 // words of where it is and moves; of a region its ID, else empty
   std::shared_ptr<const nscd::Obstacle> shape_;   // of our own kinds
   nscd::WallOptions options_;
   std::shared_ptr<VariableCourse> variables_;

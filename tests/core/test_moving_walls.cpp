@@ -182,6 +182,9 @@ TEST(words_of_walls_that_move)
   CHECK_ERROR(settings("wall zplane 0 1 wiggle z 1 1 wiggle z 1 1"), "wall 1: wiggle is given twice: give it once");
   CHECK_ERROR(settings("wall zplane 0 1 rotate 1 0 0 0 0 0 0"),
               "wall 1: rotate: the axis must be a vector other than (0, 0, 0)");
+  CHECK_ERROR(settings("wall zplane 0 1 wiggle z 1"), "too few words: give `wiggle dim A T`");
+  CHECK_ERROR(settings("wall zplane 0 1 shear x"), "too few words: give `shear dim V`");
+  CHECK_ERROR(settings("wall zplane 0 1 rotate 1 0 0 0 0 0"), "too few words: give `rotate T x y z ax ay az`");
   const nscd::Settings two = settings("wall zplane 0 1 wiggle z 1 1 friction 0.5 shear x 2 wall xcylinder 3");
   CHECK(two.walls.size() == 2 && two.walls[0].own.has(0) && two.walls[1].name == "wall 2");
 }

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -17,10 +17,19 @@ FEW = 150  # grains: so many are looked at pair by pair, more by a tree
 
 
 @dataclass
+class Surface:
+    """A wall by the distance (m) of points (n, 3) to it; it touches the atoms that have one of the bits `groups`."""
+
+    distance: Callable[[Array], Array]
+    groups: int = 1
+
+
+@dataclass
 class Spheres:
     """Centres x (n, 3) and radius (n,), m, of grains in a box; `moves` (n,) tells grains from obstacles.
 
-    The rows of `edges` (3, 3) are the box's edge vectors. `walls` are pairs of a point and a normal of any length.
+    The rows of `edges` (3, 3) are the box's edge vectors. `walls` are pairs of a point and a normal of any length, or
+    surfaces, which know the atoms' groups by `mask` (n,).
     """
 
     x: Array
@@ -29,7 +38,8 @@ class Spheres:
     moves: NDArray[np.bool_]
     edges: Array
     periodic: Sequence[bool] = (False, False, False)
-    walls: Sequence[tuple[Any, Any]] = field(default_factory=list)
+    walls: Sequence[tuple[Any, Any] | Surface] = field(default_factory=list)
+    mask: NDArray[np.int64] | None = None
 
 
 @dataclass
@@ -64,13 +74,31 @@ def largest_overlap(spheres: Spheres) -> Overlaps:
     i, j = i[near], j[near]
     names = [f"grains {a} and {b}" for a, b in zip(spheres.tag[i], spheres.tag[j], strict=True)]
     found.see(overlap[near], np.minimum(spheres.radius[i], spheres.radius[j]), names)
-    for number, (point, normal) in enumerate(spheres.walls, 1):
-        unit = np.asarray(normal, dtype=float) / np.linalg.norm(normal)
-        overlap = spheres.radius - (spheres.x - np.asarray(point, dtype=float)) @ unit
-        inside = np.flatnonzero((overlap > 0) & spheres.moves)
+    for number, wall in enumerate(spheres.walls, 1):
+        surface = wall if isinstance(wall, Surface) else plane(*wall)
+        overlap = spheres.radius - surface.distance(spheres.x)
+        touches = spheres.moves if spheres.mask is None else spheres.moves & (spheres.mask & surface.groups != 0)
+        inside = np.flatnonzero((overlap > 0) & touches)
         names = [f"grain {tag} and wall {number}" for tag in spheres.tag[inside]]
         found.see(overlap[inside], spheres.radius[inside], names)
     return found
+
+
+def plane(point: Any, normal: Any) -> Surface:
+    """Return the plane through a point, with a normal of any length into the free side."""
+    unit = np.asarray(normal, dtype=float) / np.linalg.norm(normal)
+    return Surface(lambda x: (x - np.asarray(point, dtype=float)) @ unit)
+
+
+def cylinder(point: Any, axis: Any, radius: float) -> Surface:
+    """Return the inside of a cylinder about an axis through a point."""
+    unit = np.asarray(axis, dtype=float) / np.linalg.norm(axis)
+
+    def distance(x: Array) -> Array:
+        out = x - np.asarray(point, dtype=float)
+        return radius - np.linalg.norm(out - np.outer(out @ unit, unit), axis=1)
+
+    return Surface(distance)
 
 
 def _all_pairs(n: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -135,7 +163,7 @@ def _with_images(spheres: Spheres) -> tuple[Array, NDArray[np.int64]]:
     return np.concatenate(places) @ spheres.edges, np.concatenate(owners)
 
 
-def of_lammps(lmp: Any, group: str = "all", walls: Sequence[tuple[Any, Any]] = ()) -> Spheres:
+def of_lammps(lmp: Any, group: str = "all", walls: Sequence[tuple[Any, Any] | Surface] = ()) -> Spheres:
     """Return the grains of a live LAMMPS object as they are now; atoms outside the group are obstacles.
 
     On several ranks all of them must call this, and each has all grains.
@@ -149,10 +177,11 @@ def of_lammps(lmp: Any, group: str = "all", walls: Sequence[tuple[Any, Any]] = (
     x, radius, tag, mask = own
     low, high, xy, yz, xz, periodic, _ = lmp.extract_box()
     edges = np.array([[high[0] - low[0], 0, 0], [xy, high[1] - low[1], 0], [xz, yz, high[2] - low[2]]])
-    return Spheres(x, radius, tag.astype(int), (mask & bit) != 0, edges, [bool(p) for p in periodic], walls)
+    moves = (mask & bit) != 0
+    return Spheres(x, radius, tag.astype(int), moves, edges, [bool(p) for p in periodic], walls, mask)
 
 
-def of_dump(path: Path, walls: Sequence[tuple[Any, Any]] = ()) -> Iterator[tuple[int, Spheres]]:
+def of_dump(path: Path, walls: Sequence[tuple[Any, Any] | Surface] = ()) -> Iterator[tuple[int, Spheres]]:
     """Yield step and grains of each frame of a text dump with columns id, x, y, z and radius; all of them move."""
     lines = iter(Path(path).read_text().splitlines())
     for line in lines:

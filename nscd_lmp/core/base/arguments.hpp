@@ -32,6 +32,12 @@ class Arguments {
     return words_[next_++];
   }
 
+  // So many words are left at least; `usage` shows what they are of.
+  void require(std::size_t count, std::string_view usage) const
+  {
+    if (words_.size() - next_ < count) fail("too few words: give `", usage, "`");
+  }
+
   template <class Number>
   Number number(const char *wanted = std::is_integral_v<Number> ? "a whole number" : "a number")
   {

@@ -41,6 +41,7 @@ bool GivenCourse::read(Arguments &words, const std::string &name)
 void GivenCourse::read_wiggle(Arguments &words, const std::string &name)
 {
   wiggles_ = true;
+  words.require(3, "wiggle dim A T");
   const int dimension = read_dimension(words, name + ": wiggle");
   amplitude_[dimension] = words.number<double>();
   wiggle_rate_ = 2 * M_PI / read_period(words, name + ": wiggle");
@@ -49,6 +50,7 @@ void GivenCourse::read_wiggle(Arguments &words, const std::string &name)
 void GivenCourse::read_shear(Arguments &words)
 {
   shears_ = true;
+  words.require(2, "shear dim V");
   const int dimension = read_dimension(words, "shear");
   belt[dimension] = words.number<double>();
 }
@@ -56,6 +58,7 @@ void GivenCourse::read_shear(Arguments &words)
 void GivenCourse::read_rotation(Arguments &words, const std::string &name)
 {
   rotates = true;
+  words.require(7, "rotate T x y z ax ay az");
   rotation_rate_ = 2 * M_PI / read_period(words, name + ": rotate");
   for (int d = 0; d < 3; ++d) point[d] = words.number<double>();
   for (int d = 0; d < 3; ++d) axis[d] = words.number<double>();

@@ -25,6 +25,7 @@ class Course {
  public:
   virtual ~Course() = default;
   virtual Place at(double time) const = 0;
+  virtual bool shifts_along_z() const = 0;
 
   alignas(vec4_alignment) Vec4 point{}, axis{0, 0, 1, 0};   // of the rotation: c (m) and a (unit)
   alignas(vec4_alignment) Vec4 belt{};                      // m/s, of its surface beside that
@@ -38,6 +39,7 @@ class GivenCourse final : public Course {
   bool read(Arguments &words, const std::string &name);
   bool is_given() const { return wiggles_ || shears_ || rotates; }
   Place at(double time) const override;
+  bool shifts_along_z() const override { return amplitude_[2] != 0; }
 
  private:
   void read_wiggle(Arguments &words, const std::string &name);

@@ -76,8 +76,7 @@ double Moved::fastest(const Vec4 &point, double near) const
 void Moved::require_planar(const std::string &name) const
 {
   shape_->require_planar(name);
-  const Place later = course_->at(time_ + 1);   // any motion along z begins or has begun by then
-  if (course_->belt[2] != 0 || later.shift[2] != place_.shift[2])
+  if (course_->belt[2] != 0 || course_->shifts_along_z())
     fail(name, ": it moves along z, but the scene is planar (dimension 2): move it along x or y, or use dimension 3");
   if (course_->rotates && std::hypot(course_->axis[0], course_->axis[1]) > 0)
     fail(name, ": it rotates out of the plane of the scene (dimension 2): give it the axis 0 0 1, or use dimension 3");
