@@ -81,7 +81,10 @@ def _read_plane(words: Words) -> list[Wall]:
 
 def _read_slab(words: Words) -> list[Wall]:
     axis = np.eye(3)[AXES.index(words.kind[0])]
-    sides = zip(words.span("NULL"), (axis, -axis), strict=True)
+    ends = words.span("NULL")
+    if not np.isfinite(ends).any():
+        raise words.wrong("both sides are NULL")
+    sides = zip(ends, (axis, -axis), strict=True)
     return [Plane(axis * at, normal) for at, normal in sides if np.isfinite(at)]
 
 
