@@ -212,8 +212,9 @@ def plot_scale_bar(ax: Axes, view: View, bounds: Array, factor: float, unit: str
     length = max(step * 10.0 ** np.floor(np.log10(most / step)) for step in (1.0, 2.0, 5.0))
     ends, row = (0.0, length / pixel), 1.03 * rows + 0.02 * columns
     ax.plot(ends, (row, row), color=OUTLINE, linewidth=2.5, solid_capstyle="butt")
-    place = {"xytext": (6.0, 0.0), "textcoords": "offset points", "va": "center"}
-    ax.annotate(f"{length:g} {unit}", (ends[1], row), color=OUTLINE, **place)
+    ax.annotate(
+        f"{length:g} {unit}", (ends[1], row), (6.0, 0.0), textcoords="offset points", color=OUTLINE, va="center"
+    )
     ax.set_ylim(row + 0.02 * columns, ax.get_ylim()[1])
 
 

@@ -27,6 +27,11 @@ class WallScene:
         Points of the lines.
     shown : ndarray, (3, 2)
         Box that holds the lines and the grains.
+
+    Raises
+    ------
+    ValueError
+        No line lies in the box.
     """
 
     def __init__(self, walls: Sequence[Wall], frame: Frame, whole: bool, camera: tuple[float, float]) -> None:
@@ -36,6 +41,11 @@ class WallScene:
         toward = np.array([np.cos(el) * np.cos(az), np.cos(el) * np.sin(az), np.sin(el)])
         far = self.bounds.mean(axis=1) + 5.0 * float(np.max(np.ptp(self.bounds, axis=1))) * toward
         self.held = np.concatenate([np.zeros((0, 3)), *self.outlines(far)])
+        if not len(self.held):
+            low, high = (" ".join(f"{value:.4g}" for value in side) for side in self.bounds.T)
+            raise ValueError(
+                f"no line of the walls lies in the box from ({low}) to ({high}): give them in the units of the dump"
+            )
         every = np.concatenate([self.held, frame.x - frame.radius[:, None], frame.x + frame.radius[:, None]])
         self.shown = np.column_stack([every.min(axis=0), every.max(axis=0)])
 

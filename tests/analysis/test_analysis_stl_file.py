@@ -45,7 +45,7 @@ def test_triangles_are_read(tmp_path, data):
 def test_damaged_files_are_named(tmp_path, data, message):
     path = tmp_path / "a.stl"
     path.write_bytes(data)
-    with pytest.raises(ValueError, match="a.stl") as told:
+    with pytest.raises(ValueError, match=r"a\.stl") as told:
         read_stl(path)
     assert message in str(told.value)
 

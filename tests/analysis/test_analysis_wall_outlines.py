@@ -88,7 +88,7 @@ def test_box_cuts_the_round_walls_in_closed_forms():
     upright = outlines("zcylinder 1.25")  # its circles leave the box at y = 0.75
     assert min(abs(abs(line[0, 1]) - 0.75) for line in upright) < 1e-9
     # a face along the axis meets a cone in two straight lines, another one in a branch of a hyperbola
-    half = outlines("cone z 0 0 0 1 -1 1", "plane 0 0 0 0 1 0", x=GRAINS + [0.0, 0.5, 0.0])
+    half = outlines("cone z 0 0 0 1 -1 1", "plane 0 0 0 0 1 0", x=GRAINS + np.array([0.0, 0.5, 0.0]))
     straight = [line for line in half if np.allclose(line[:, 1], 0.0, atol=1e-9) and np.ptp(line[:, 2]) > 1.9]
     assert {int(np.sign(line[len(line) // 2, 0])) for line in straight} >= {-1, 1}
     cut = np.concatenate(outlines("cone z 0 0 0 1 -1 1", "plane 0 0.5 0 0 -1 0"))
@@ -236,6 +236,10 @@ def test_script_draws_walls(heap, tmp_path):
 
 
 def test_script_error_of_a_wall_is_one_message(heap, tmp_path):
-    for words, message in ((["wedge"], "unknown wall 'wedge'"), (["mesh", "no.stl"], "'no.stl': there is no such")):
+    for words, message in (
+        (["wedge"], "unknown wall 'wedge'"),
+        (["mesh", "no.stl"], "'no.stl': there is no such"),
+        (["sphere", "9", "9", "9", "2"], "no line of the walls lies in the box from (-1 -1 -1)"),
+    ):
         done = draw(tmp_path, heap, "--wall", *words)
         assert done.returncode == 2 and message in done.stderr and "Traceback" not in done.stderr
