@@ -73,8 +73,9 @@ def plot_bed_picture(
     ends: str = "neither",
     label: str = "",
     lengths: Sequence[str] = ("", "", ""),
+    outlines: Sequence[Array] | None = None,
 ) -> None:
-    """Draw a rendered bed, the outline of its box, edge lengths and a colour bar.
+    """Draw a rendered bed, the outline of its box or of walls, edge lengths and a colour bar.
 
     Parameters
     ----------
@@ -90,17 +91,32 @@ def plot_bed_picture(
         Title of the colour bar, with unit.
     lengths : sequence of 3 str
         Text at an edge along x, y and z; empty for none.
+    outlines : sequence of ndarray, (n, 3), optional
+        Lines of `wall_outlines.compute_wall_outlines`, instead of the outline of the box.
     """
     ax.imshow(pixels, interpolation="lanczos", aspect="equal")
+    if outlines is None:
+        _plot_box(ax, view, depth, bounds)
+    else:
+        plot_outlines(ax, view, depth, bounds, outlines)
+    for axis, text in enumerate(lengths):
+        if text:
+            _plot_length(ax, view, bounds, axis, text)
+    _finish(ax, pixels, scale, ends, label)
+
+
+def _plot_box(ax: Axes, view: View, depth: Array, bounds: Array) -> None:
+    """Draw the edges of the box."""
     corners = np.array(list(product(*bounds)))
     nearest = int(np.argmin(np.linalg.norm(corners - view.eye, axis=1)))
     for first, second in product(range(8), repeat=2):
         if first < second and np.sum(corners[first] != corners[second]) == 1:
             faint = nearest in (first, second)  # these three edges run across the bed
             _plot_edge(ax, view, depth, corners[first], corners[second], 0.35 if faint else 1.0)
-    for axis, text in enumerate(lengths):
-        if text:
-            _plot_length(ax, view, bounds, axis, text)
+
+
+def _finish(ax: Axes, pixels: Array, scale: Normalize | None, ends: str, label: str) -> None:
+    """Frame the picture, and draw the colour bar where there is a scale."""
     ax.set_axis_off()
     margin = 0.02 * pixels.shape[1]
     ax.set_xlim(-margin, pixels.shape[1] + margin)
@@ -121,14 +137,45 @@ def plot_bed_picture(
 def _plot_edge(ax: Axes, view: View, depth: Array, start: Array, end: Array, alpha: float) -> None:
     """Draw those pieces of an edge that no grain hides."""
     points = start + np.linspace(0.0, 1.0, 600)[:, None] * (end - start)
+    path, free, _ = _look(view, depth, points)
+    pieces = [path[run] for run in _runs(free) if free[run[0]]]
+    ax.add_collection(LineCollection(pieces, colors=OUTLINE, linewidths=1.1, alpha=alpha))
+
+
+def _look(
+    view: View, depth: Array, points: Array, bottom: float = -np.inf
+) -> tuple[Array, NDArray[np.bool_], NDArray[np.bool_]]:
+    """Places (n, 2) of points in the picture, whether they are seen, and whether grains are behind them."""
     column, row, distance = view.project(points)
     rows = np.clip(np.rint(row), 0, depth.shape[0] - 1).astype(int)
     columns = np.clip(np.rint(column), 0, depth.shape[1] - 1).astype(int)
-    free = distance <= depth[rows, columns] * (1.0 + 1e-3)
+    met = depth[rows, columns]
+    share = np.where(np.isfinite(met), met, 0.0) / distance
+    height = np.where(np.isfinite(met), view.eye[2] + share * (points[:, 2] - view.eye[2]), -np.inf)
     path = np.column_stack([column - 0.5, row - 0.5]) / 2.0  # the view has 2 x 2 rays per pixel
-    breaks = np.flatnonzero(np.diff(free.astype(int))) + 1
-    pieces = [run for run in np.split(np.arange(len(path)), breaks) if free[run[0]]]
-    ax.add_collection(LineCollection([path[run] for run in pieces], colors=OUTLINE, linewidths=1.1, alpha=alpha))
+    return path, distance <= met * (1.0 + 1e-3), height > bottom + 1e-6 * distance
+
+
+def _runs(values: NDArray[Any]) -> list[NDArray[np.intp]]:
+    """Indices of stretches of equal values."""
+    return np.split(np.arange(len(values)), np.flatnonzero(np.diff(values.astype(int))) + 1)
+
+
+def plot_outlines(ax: Axes, view: View, depth: Array, bounds: Array, outlines: Sequence[Array]) -> None:
+    """Draw those pieces of lines (n, 3) that no grain hides, faint where they run across grains."""
+    pieces: dict[float, list[Array]] = {1.0: [], 0.35: []}
+    for line in outlines:
+        column, row, _ = view.project(line)
+        way = np.append(0.0, np.cumsum(np.hypot(np.diff(column), np.diff(row))))
+        at = np.linspace(0.0, way[-1], 2 + int(way[-1]))
+        path, seen, ahead = _look(view, depth, np.column_stack([np.interp(at, way, c) for c in line.T]), bounds[2, 0])
+        kind = np.where(seen, 1 + ahead, 0)
+        for run in _runs(kind):
+            if kind[run[0]]:
+                run = np.append(run, run[-1] + 1) if run[-1] + 1 < len(path) else run
+                pieces[0.35 if kind[run[0]] == 2 else 1.0].append(path[run])
+    for alpha, paths in pieces.items():
+        ax.add_collection(LineCollection(paths, colors=OUTLINE, linewidths=1.1, alpha=alpha, capstyle="butt"))
 
 
 def _plot_length(ax: Axes, view: View, bounds: Array, axis: int, text: str) -> None:
@@ -156,6 +203,21 @@ def _plot_length(ax: Axes, view: View, bounds: Array, axis: int, text: str) -> N
     )
 
 
+def plot_scale_bar(ax: Axes, view: View, bounds: Array, factor: float, unit: str) -> None:
+    """Draw a bar of a round length below the picture; it is true at the middle of the bounds."""
+    rows, columns = (side / 2.0 for side in view.shape)
+    distance = float((bounds.mean(axis=1) - view.eye) @ view.axes[2])
+    pixel = 2.0 * view.pixel * distance * factor
+    most = 0.3 * columns * pixel
+    length = max(step * 10.0 ** np.floor(np.log10(most / step)) for step in (1.0, 2.0, 5.0))
+    ends, row = (0.0, length / pixel), 1.03 * rows + 0.02 * columns
+    ax.plot(ends, (row, row), color=OUTLINE, linewidth=2.5, solid_capstyle="butt")
+    ax.annotate(
+        f"{length:g} {unit}", (ends[1], row), (6.0, 0.0), textcoords="offset points", color=OUTLINE, va="center"
+    )
+    ax.set_ylim(row + 0.02 * columns, ax.get_ylim()[1])
+
+
 def _choose_values(frame: Frame, name: str, factor: float, unit: str) -> tuple[Array, str]:
     """Values (n,) to colour by, and the title of the colour bar."""
     if name == "height":
@@ -174,6 +236,8 @@ def main(words: Sequence[str]) -> None:
     from command_line import new_parser, positive_int, print_table
     from packing import Packing
     from sphere_rendering import render_bed
+    from wall_scene import WallScene
+    from wall_words import add_wall_option, read_walls
 
     parser = new_parser(__doc__, "bed_picture.png")
     parser.add_argument("--color", choices=COLORS, default="height", help="[height]")
@@ -181,30 +245,40 @@ def main(words: Sequence[str]) -> None:
     parser.add_argument("--elevation", type=float, help="of the camera, degrees [24; 90 if planar]")
     parser.add_argument("--size", type=positive_int, default=1100, help="pixels of the longer side [1100]")
     parser.add_argument("--whole-box", action="store_true", help="show its empty part too")
+    add_wall_option(parser)
     arguments = parser.parse_args(words)
+    walls = read_walls(arguments.walls)
     frame = Packing(arguments.dump).frame(arguments.frame)
     unit = choose_length_unit(arguments.length_unit, frame.radius)
     values, label = _choose_values(frame, arguments.color, unit.factor, unit.name)
     rgb, scale, ends = compute_colors(values)
-    shown, cut = compute_shown_bounds(frame.x, frame.radius, frame.bounds, arguments.whole_box)
     planar = np.ptp(frame.x[:, 2]) == 0.0
     azimuth, elevation = (-90.0, 90.0) if planar else (-62.0, 24.0)
-    pixels, view, depth = render_bed(
-        frame.x,
-        frame.radius,
-        rgb,
-        shown,
+    camera = (
         azimuth if arguments.azimuth is None else arguments.azimuth,
         elevation if arguments.elevation is None else arguments.elevation,
         arguments.size,
     )
+    shown, cut = compute_shown_bounds(frame.x, frame.radius, frame.bounds, arguments.whole_box)
+    scene = WallScene(walls, frame, arguments.whole_box, camera[:2]) if walls else None
+    if scene:
+        shown = scene.shown
+        pixels, view, depth = render_bed(
+            frame.x, frame.radius, rgb, shown, *camera, ground=scene.is_ground, held=scene.held
+        )
+    else:
+        pixels, view, depth = render_bed(frame.x, frame.radius, rgb, shown, *camera)
     sides = [f"{side * unit.factor:.4g} {unit.name}" for side in np.ptp(shown, axis=1)]
     if cut or planar:
         sides[2] = ""
     rows, columns = pixels.shape[:2]
     inches = 7.0 / max(rows, columns)
     figure, ax = new_figure(1.2 + inches * columns, 0.3 + max(inches * rows, 2.5))
-    plot_bed_picture(ax, pixels, view, depth, shown, scale, ends, label, sides)
+    if scene:
+        plot_bed_picture(ax, pixels, view, depth, shown, scale, ends, label, outlines=scene.outlines(view.eye))
+        plot_scale_bar(ax, view, shown, unit.factor, unit.name)
+    else:
+        plot_bed_picture(ax, pixels, view, depth, shown, scale, ends, label, sides)
     save_figure(figure, arguments.output)
     print_table(
         f"Bed picture, step {frame.step}",

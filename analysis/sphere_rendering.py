@@ -8,6 +8,7 @@ what darkens the pores. Some thousand grains take a few seconds.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -105,8 +106,12 @@ def rasterize(view: View, x: Array, radius: Array) -> tuple[Array, NDArray[np.in
     return depth, owner
 
 
-def add_floor(view: View, depth: Array, bounds: Array) -> NDArray[np.bool_]:
-    """Put the bottom of the box behind the spheres into `depth`; returns its pixels."""
+def add_floor(
+    view: View, depth: Array, bounds: Array, ground: Callable[[Array], NDArray[np.bool_]] | None = None
+) -> NDArray[np.bool_]:
+    """Put the bottom of the box, where `ground` of points (m, 3) says so, behind the spheres into `depth`; returns its
+    pixels.
+    """
     u, v = view.tangents()
     right, up, forward = view.axes  # right is level, so a row of pixels has one depth
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -116,6 +121,10 @@ def add_floor(view: View, depth: Array, bounds: Array) -> NDArray[np.bool_]:
             place = view.eye[c] + t * (u * right[c] + (v * up[c] + forward[c])[:, None])
             inside &= (place >= bounds[c, 0]) & (place <= bounds[c, 1])
     floor: NDArray[np.bool_] = inside & (t > 0.0) & (t < depth)
+    if ground is not None:
+        row, column = np.nonzero(floor)
+        rays = np.column_stack([u[column], v[row], np.ones(len(row))]) @ view.axes
+        floor[row, column] = ground(view.eye + t[row] * rays)
     depth[floor] = np.broadcast_to(t, view.shape)[floor]
     return floor
 
@@ -166,6 +175,8 @@ def render_bed(
     elevation: float = 24.0,
     size: int = 1100,
     lamps: int = 32,
+    ground: Callable[[Array], NDArray[np.bool_]] | None = None,
+    held: Array | None = None,
 ) -> tuple[Array, View, Array]:
     """Draw the spheres and the floor of the box.
 
@@ -185,6 +196,10 @@ def render_bed(
         Pixels along the longer side of the picture; each is an average of 2 x 2 rays.
     lamps : int
         Lamps of the sky dome; more give smoother shade and take longer.
+    ground : callable, optional
+        Which of some points (m, 3) of the bottom of the box are floor; all without it.
+    held : ndarray, (m, 3), optional
+        Points beside the spheres that the picture holds; without it the corners of the box.
 
     Returns
     -------
@@ -197,13 +212,13 @@ def render_bed(
     """
     az, el = np.radians([azimuth, elevation])
     toward = np.array([np.cos(el) * np.cos(az), np.cos(el) * np.sin(az), np.sin(el)])
-    corners = np.array(list(product(*bounds)))
+    corners = np.array(list(product(*bounds))) if held is None else held
     cubes = x[:, None, :] + radius[:, None, None] * np.array(list(product((-1.0, 1.0), repeat=3)))
     scene = Scene(x, radius, np.concatenate([corners, cubes.reshape(-1, 3)]))
     distance = 5.0 * float(np.max(np.ptp(scene.hull, axis=0)))
     view = View.fit(scene.hull, toward, distance, 2 * size)
     depth, owner = rasterize(view, x, radius)
-    owner[add_floor(view, depth, bounds)] = _FLOOR
+    owner[add_floor(view, depth, bounds, ground)] = _FLOOR
     row, column = np.nonzero(owner != _NOTHING)
     u, v = view.tangents()
     rays = np.column_stack([u[column], v[row], np.ones(len(row))]) @ view.axes
