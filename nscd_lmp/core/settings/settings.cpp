@@ -189,6 +189,7 @@ static void check_overlap(const Settings &s)
 
 Settings checked(Settings s, int dimension)
 {
+  if (s.walls.size() > most_walls) fail(s.walls.size(), " walls are more than ", most_walls, ": join some in a mesh");
   const SolverEntry &solver = find_solver(s.solver);
   find_scheme(s.law);
   check_ranges(s);
