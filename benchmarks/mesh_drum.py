@@ -2,9 +2,9 @@
 """A drum that turns, as an exact cylinder, as a region of LAMMPS and as a mesh of triangles.
 
 Grains with friction 0.5 in a smooth drum, periodic along its axis, one turn a second. The angle is that of the line
-from the middle of the drum to the centre of mass, from the vertical; the torque that of the grains on the drum over their
-weight times its radius. Both are means from half a second on; `angle_error` and `torque_error` are those of the means,
-from ten parts of the time. `overlap` is the largest one of the looks, over the radius.
+from the middle of the drum to the centre of mass, from the vertical; the torque is that of the grains on the drum over
+their weight times its radius. Both are means from half a second on; `angle_error` and `torque_error` are those of the
+means, from ten parts of the time. `overlap` is the largest one of the looks, over the radius.
 
     python benchmarks/mesh_drum.py
     python benchmarks/mesh_drum.py --facets 20 200 --seconds 2 --seeds 1

@@ -11,7 +11,7 @@ from walled import walled
 
 pytestmark = pytest.mark.fast
 
-KINDS = "region, plane, xplane, yplane, zplane, xcylinder, ycylinder, zcylinder, cylinder"
+KINDS = "region, plane, mesh, xplane, yplane, zplane, xcylinder, ycylinder, zcylinder, cylinder"
 VARIABLES = [
     *("variable x equal 0.1*step*dt", "variable atoms atom x", "variable size equal 1+step"),
     *("variable huge equal 1.0e300*1.0e300", "variable up equal 0.5*(step>2)"),
@@ -152,8 +152,8 @@ def test_a_cone_along_y_with_ends():
     said = refused("region r cone y 0 0 0.3 1 -1 1", "fix w all wall/nscd region r", "run 0")
     assert said.startswith("Fix nscd hard: LAMMPS gives a surface of region r near (")
     assert said.endswith(
-        ") a normal that is not perpendicular to it, as it does at the ends of a cone along y: turn the scene, or use a "
-        "mesh"
+        ") a normal that is not perpendicular to it, as it does at the ends of a cone along y: turn the scene, or use "
+        "a mesh"
     )
 
 
