@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from wall_mesh import Mesh
 from wall_shapes import Block, Curve, Cut, Plane, Sphere, Tube
 
 Array = NDArray[np.floating[Any]]
-Wall = Plane | Block | Sphere | Tube | Mesh
+Wall: TypeAlias = Plane | Block | Sphere | Tube | Mesh
 SAMPLES = 1440  # of a curve
 HEADROOM = 0.06  # of a wall above the bed, as a share of the bed's height
 _SLACK = 1e-10  # share of the size of the box by which points may lie beyond it

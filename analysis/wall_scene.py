@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from wall_mesh import Mesh
 from wall_outlines import Wall, compute_bounds_with_walls, compute_wall_outlines, holds
 from wall_shapes import Block, Plane
 
@@ -63,6 +64,6 @@ class WallScene:
             if isinstance(wall, Block):
                 ground |= np.abs(points[:, 2] - wall.bounds[2, 0]) < near
         for wall in self.walls:
-            if holds(wall, self.x):
-                ground &= wall.distance(points) > -near  # type: ignore[union-attr]
+            if holds(wall, self.x) and not isinstance(wall, Mesh):
+                ground &= wall.distance(points) > -near
         return ground
