@@ -152,8 +152,8 @@ def test_a_cone_along_y_with_ends():
     said = refused("region r cone y 0 0 0.3 1 -1 1", "fix w all wall/nscd region r", "run 0")
     assert said.startswith("Fix nscd hard: LAMMPS gives a surface of region r near (")
     assert said.endswith(
-        ") a normal that is not perpendicular to it, as it does at the ends of a cone along y: turn the scene, or use a "
-        "mesh"
+        ") a normal that is not perpendicular to it, as it does at the ends of a cone along y: turn the scene, or use "
+        "a mesh"
     )
 
 

@@ -48,6 +48,24 @@ SHAPES = {
         "region d union 2 b c",
         "region r intersect 2 a d",
     ],
+    "pipe in a block, as an intersection": [
+        *("region a block -1 1 -1 1 -1 1", "region b cylinder z 0 0 0.5 -0.6 0.6 open 1 open 2"),
+        "region r intersect 2 a b",
+    ],
+    "pipe in a block, as a union": [
+        *("region a block -1 1 -1 1 -1 1", "region b cylinder z 0 0 0.5 -0.6 0.6 open 1 open 2"),
+        "region r union 2 a b",
+    ],
+    "hopper of two open parts": [
+        *("region a cone z 0 0 0.2 1 -1 0 open 1 open 2", "region b cylinder z 0 0 1 0 1 open 1 open 2"),
+        "region r union 2 a b",
+    ],
+    "union of parts that have turned and moved": [
+        *("variable turn equal 0.7", "variable way equal 0.2"),
+        "region a sphere -0.3 0 0 0.8 move NULL v_way NULL",
+        "region b block 0 1 -0.4 0.4 -0.4 0.4 rotate v_turn 0 0 0 1 1 0",
+        "region r union 2 a b",
+    ],
     "block that has turned and moved": [
         "variable turn equal 0.7",
         "variable way equal 0.2",
