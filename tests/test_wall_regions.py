@@ -14,7 +14,7 @@ from nscd_lmp import _core
 
 pytestmark = pytest.mark.fast
 
-PROBE, PROBES, STIFFNESS = 0.35, 1500, 1000.0
+PROBE, PROBES = 0.35, 1500
 SPHERE = "region a sphere -0.3 0 0 0.8"
 BLOCK = "region b block 0 1 -0.4 0.4 -0.4 0.4"
 SHAPES = {
@@ -88,9 +88,9 @@ def probed(*region, integrator):
 
 def springs(*region):
     """Return what LAMMPS' own wall of springs presses each probe by, over its stiffness: (n, 3), m."""
-    wall = f"fix w inside wall/gran/region hooke {STIFFNESS} NULL 0 NULL 0 0 region r"
-    lmp = probed(*region, integrator=["comm_modify vel yes", wall, "fix move all nve/sphere", "run 0"])
-    pressed = per_atom(lmp, "f") / STIFFNESS
+    wall = f"fix w inside wall/region r harmonic 0.5 1.0 {PROBE}"  # 2 epsilon is the stiffness
+    lmp = probed(*region, integrator=[wall, "fix move all nve/sphere", "run 0"])
+    pressed = per_atom(lmp, "f")
     lmp.close()
     return pressed
 
