@@ -14,7 +14,7 @@ from nscd_lmp import _core
 
 pytestmark = pytest.mark.fast
 
-PROBE, PROBES, STIFFNESS = 0.35, 1500, 1000.0
+PROBE, PROBES = 0.35, 1500
 SPHERE = "region a sphere -0.3 0 0 0.8"
 BLOCK = "region b block 0 1 -0.4 0.4 -0.4 0.4"
 SHAPES = {
@@ -48,6 +48,24 @@ SHAPES = {
         "region d union 2 b c",
         "region r intersect 2 a d",
     ],
+    "pipe in a block, as an intersection": [
+        *("region a block -1 1 -1 1 -1 1", "region b cylinder z 0 0 0.5 -0.6 0.6 open 1 open 2"),
+        "region r intersect 2 a b",
+    ],
+    "pipe in a block, as a union": [
+        *("region a block -1 1 -1 1 -1 1", "region b cylinder z 0 0 0.5 -0.6 0.6 open 1 open 2"),
+        "region r union 2 a b",
+    ],
+    "hopper of two open parts": [
+        *("region a cone z 0 0 0.2 1 -1 0 open 1 open 2", "region b cylinder z 0 0 1 0 1 open 1 open 2"),
+        "region r union 2 a b",
+    ],
+    "union of parts that have turned and moved": [
+        *("variable turn equal 0.7", "variable way equal 0.2"),
+        "region a sphere -0.3 0 0 0.8 move NULL v_way NULL",
+        "region b block 0 1 -0.4 0.4 -0.4 0.4 rotate v_turn 0 0 0 1 1 0",
+        "region r union 2 a b",
+    ],
     "block that has turned and moved": [
         "variable turn equal 0.7",
         "variable way equal 0.2",
@@ -70,9 +88,9 @@ def probed(*region, integrator):
 
 def springs(*region):
     """Return what LAMMPS' own wall of springs presses each probe by, over its stiffness: (n, 3), m."""
-    wall = f"fix w inside wall/gran/region hooke {STIFFNESS} NULL 0 NULL 0 0 region r"
-    lmp = probed(*region, integrator=["comm_modify vel yes", wall, "fix move all nve/sphere", "run 0"])
-    pressed = per_atom(lmp, "f") / STIFFNESS
+    wall = f"fix w inside wall/region r harmonic 0.5 1.0 {PROBE}"  # 2 epsilon is the stiffness
+    lmp = probed(*region, integrator=[wall, "fix move all nve/sphere", "run 0"])
+    pressed = per_atom(lmp, "f")
     lmp.close()
     return pressed
 

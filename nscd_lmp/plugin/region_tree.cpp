@@ -52,9 +52,12 @@ RegionTree::RegionTree(Region *region) : region_(region)
 
 int RegionTree::add(Region *region)
 {
-  Node node{region, {}, strcmp(region->style, "union") == 0, 0, -1};
+  Node node{region, {}, strcmp(region->style, "union") == 0, 0, -1, region->openflag != 0};
   if (node.is_union || strcmp(region->style, "intersect") == 0) {
     for (int k = 0; k < region->nregion; ++k) node.parts.push_back(add(region->reglist[k]));
+    const auto is_open = [this](int part) { return nodes_[std::size_t(part)].is_open; };
+    node.is_open = node.is_union ? std::any_of(node.parts.begin(), node.parts.end(), is_open)
+                                 : std::all_of(node.parts.begin(), node.parts.end(), is_open);
   } else {
     if (region->varshape)
       nscd::fail("region ", region->id, " has a size that varies: walls keep their shape; use `move`, or a mesh");
@@ -146,8 +149,9 @@ bool RegionTree::is_kept(const Node &node, std::size_t part, const double *surfa
 {
   const bool in_all = node.is_union == outside;
   for (std::size_t other = 0; other < node.parts.size(); ++other) {
-    if (other == part) continue;
-    Region *region = nodes_[std::size_t(node.parts[other])].region;
+    const Node &beside = nodes_[std::size_t(node.parts[other])];
+    if (other == part || beside.is_open) continue;   // an open part hides nothing, as in LAMMPS
+    Region *region = beside.region;
     const Flipped flip(region, outside);
     if ((region->match(surface[0], surface[1], surface[2]) != 0) != in_all) return false;
   }

@@ -68,6 +68,7 @@ class RegionTree {
     std::vector<int> parts;    // of a union or intersection
     bool is_union;
     int first_feature, moving;
+    bool is_open;              // LAMMPS has all points on its side
   };
   int add(Region *region);
   void find(const Node &node, const double *point, double cutoff, bool flipped,
