@@ -48,7 +48,11 @@ OWN = {
         'The settings of Barboteu & Dumont (2017) for what is None here: ``pdas``, ``moreau``, ``criterion="paper"``,'
         " tol 1e-7 m/s, no warm start.",
     ),
-    "wall": ("sequence of Plane", "None: those that :func:`nscd_lmp.scene` was given, else none."),
+    "wall": (
+        "sequence of Wall",
+        ":class:`nscd_lmp.Plane`, :class:`nscd_lmp.Planes`, :class:`nscd_lmp.Cylinder`, and how they move from here on."
+        " None: those that :func:`nscd_lmp.scene` was given, else none.",
+    ),
 }
 PARAMETERS = {"material": "materials", "wall": "walls"}
 
