@@ -41,7 +41,7 @@ OWN = {
     "material": (
         "dict",
         "What contacts of two types of atoms have of their own: ``{(1, 2): nscd_lmp.Material(friction=0.3)}``. Of"
-        " several that name a pair the later ones hold.",
+        " several that name a pair the later ones hold. With ``pair_style nscd`` give them to its ``pair_coeff``.",
     ),
     "paper": (
         "bool",

@@ -53,7 +53,8 @@ def attach(
 ) -> Attached:
     """Make the grains of a group rigid: the following runs of `lmp` integrate them by contact dynamics.
 
-    Call it when atoms, pair style (``pair_style zero CUTOFF`` will do) and neighbor settings are there. Fixes
+    Call it when atoms, pair style and neighbor settings are there. ``pair_style nscd`` has list and materials, and
+    its ``pair_coeff`` may change between runs; ``pair_style zero CUTOFF`` serves in builds of LAMMPS without it. Fixes
     that exert forces may come before or after.
 
     Parameters
@@ -77,7 +78,7 @@ def attach(
         Tangential restitution of contacts without their own; with friction only; 0 to 1.
     materials : dict, optional
         What contacts of two types of atoms have of their own: ``{(1, 2): nscd_lmp.Material(friction=0.3)}``. Of several
-        that name a pair the later ones hold.
+        that name a pair the later ones hold. With ``pair_style nscd`` give them to its ``pair_coeff``.
     walls : sequence of Wall, optional
         :class:`nscd_lmp.Plane`, :class:`nscd_lmp.Planes`, :class:`nscd_lmp.Cylinder`, and how they move from here on.
         None: those that :func:`nscd_lmp.scene` was given, else none.
