@@ -93,7 +93,7 @@ def microseconds(bed: Bed, settings: dict[str, Any], more_walls: Sequence[nscd_l
 
 def own_friction(bed: Bed, coefficient: float) -> Floor:
     """Return the bed's walls with a coefficient of their own."""
-    return [nscd_lmp.Plane(wall.point, wall.normal, coefficient) for wall in bed.walls]
+    return [nscd_lmp.Plane(wall.point, wall.normal, friction=coefficient) for wall in bed.walls]
 
 
 def measure(bed: Bed, one: Ingredient, repeats: int) -> dict[str, float]:

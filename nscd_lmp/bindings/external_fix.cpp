@@ -19,9 +19,10 @@ constexpr int in_setup = 0, in_first_step = 1;
 ExternalFix::ExternalFix(const Library &library, const std::string &id, int group_bit, const Settings &settings,
                          Step::CustomSolver custom, nanobind::object ranks, nanobind::object find_homes) :
     library_(library),
-    id_(id), group_bit_(group_bit),
+    id_(id), group_bit_(group_bit), pair_(library_, settings), materials_(pair_.materials()),
     ranks_(ranks.is_none() ? nullptr : std::make_unique<PythonRanks>(ranks)), find_homes_(std::move(find_homes)),
-    step_(settings, std::move(custom), setting("dimension"), ranks_.get(), setting("ntypes"))
+    step_(pair_.with(materials_), std::move(custom), setting("dimension"), ranks_.get(), setting("ntypes")),
+    wall_loads_(step_.settings().walls.size())
 {
 }
 
@@ -58,6 +59,7 @@ void ExternalFix::begin_run(int first_call)
   for (int i = 0; i < setting("nlocal"); ++i) edges.radius = std::max(edges.radius, radius[i]);
   if (ranks_) ranks_->max({&edges.radius, 1});
   require_walls_repeat(step_.settings().walls, edges);
+  take_materials();
   find_list();
   homes_.clear();
   reach_.begin_run();
@@ -97,21 +99,6 @@ void ExternalFix::forget_places(double elapsed)
   last_box_ = now;
 }
 
-BoxEdges ExternalFix::box() const
-{
-  const double *low = library_.global<double>("boxlo"), *high = library_.global<double>("boxhi");
-  const int *periodic = library_.global<int>("periodicity");
-  BoxEdges box{{{high[0] - low[0], 0, 0}, {0, high[1] - low[1], 0}, {0, 0, high[2] - low[2]}},
-               {periodic[0] != 0, periodic[1] != 0, periodic[2] && setting("dimension") == 3},
-               {low[0], low[1], low[2]}};
-  const int *triclinic = library_.global<int>("triclinic");
-  if (!triclinic || !*triclinic) return box;
-  box.edge[1][0] = *library_.global<double>("xy");
-  box.edge[2][0] = *library_.global<double>("xz");
-  box.edge[2][1] = *library_.global<double>("yz");
-  return box;
-}
-
 // On all ranks; LAMMPS of before 2022 does not tell its special_bonds.
 void ExternalFix::require_bonds_listed(const Grains &g)
 {
@@ -147,8 +134,34 @@ void ExternalFix::require_last() const
          "define it before, or give LAMMPS the commands one by one (lmp.command, commands_list or commands_string)");
 }
 
+// What pair_coeff has changed since the last run.
+void ExternalFix::take_materials()
+{
+  const std::string now = pair_.materials();
+  if (now == materials_) return;
+  const Settings wanted = pair_.with(now);
+  step_.change_materials(wanted.pairs, wanted.mixing);
+  materials_ = now;
+}
+
+void ExternalFix::set_listed_pairs(ListedPairs listed)
+{
+  if (listed.pair_style == ToldPair::style && pair_.materials().empty())
+    fail("pair_style nscd does not tell its materials: is the plugin that LAMMPS has loaded of another version? Use ",
+         "`pair_style zero CUTOFF`");
+  reach_.set(std::move(listed));
+}
+
 void ExternalFix::find_list()
 {
+  if (reach_.pair_style() == ToldPair::style) {
+    list_ = reach_.take(pair_.list());
+    if (list_ < 0)
+      fail("pair_style nscd is gone, or has no neighbor list: give LAMMPS the commands one by one (lmp.command, ",
+           "commands_list or commands_string), or detach first");
+    image_cutoff_ = reach_.told_images();
+    return;
+  }
   list_ = library_.find_pair_neighlist(library_.handle, reach_.pair_style().c_str(), 1, 0, 0);
   if (list_ < 0)
     fail("pair_style ", reach_.pair_style(), " has no neighbor list: use pair_style zero CUTOFF, beside other styles ",
@@ -199,54 +212,6 @@ std::vector<std::string> ExternalFix::doubts() const
   return said;
 }
 
-// Its rate is not told.
-void ExternalFix::look_at_box()
-{
-  double high[3], xy = 0, yz = 0, xz = 0;
-  int periodic[3] = {}, changes = 0;
-  library_.extract_box(library_.handle, box_.low, high, &xy, &yz, &xz, periodic, &changes);
-  const double edges[6] = {high[0] - box_.low[0], high[1] - box_.low[1], high[2] - box_.low[2], yz, xz, xy};
-  std::copy_n(edges, 6, box_.edges);
-  std::copy_n(periodic, 3, box_.periodic);
-}
-
-// As LAMMPS has them.
-Grains ExternalFix::arrays()
-{
-  Grains g;
-  g.owned = setting("nlocal");
-  g.ghosts = setting("nghost");
-  g.x = *library_.per_atom<double *>("x");
-  g.v = *library_.per_atom<double *>("v");
-  g.f = *library_.per_atom<double *>("f");
-  if (step_.settings().frictional()) {
-    g.omega = *library_.per_atom<double *>("omega");
-    if (double **torque = library_.per_atom<double *>("torque")) g.torque = *torque;
-  } else if (double **torque = library_.per_atom<double *>("torque")) {
-    g.unread_torque = *torque;
-  }
-  g.radius = library_.per_atom<double>("radius");
-  g.tag = library_.per_atom<std::int32_t>("id");
-  g.mask = library_.per_atom<int>("mask");
-  g.type = library_.per_atom<int>("type");
-  g.mass = library_.per_atom<double>("rmass");
-  if (!g.mass) {
-    const double *by_type = library_.per_atom<double>("mass");
-    const int *type = library_.per_atom<int>("type");
-    masses_.resize(g.owned);
-    for (int i = 0; i < g.owned; ++i) masses_[i] = by_type[type[i]];
-    g.mass = masses_.data();
-  }
-  g.group = group_bit_;
-  g.held = held_;
-  g.watched = !movers_;
-  g.force_to_acceleration = *library_.global<double>("ftm2v");
-  g.square_to_energy = *library_.global<double>("mvv2e");
-  look_at_box();
-  g.box = &box_;
-  return g;
-}
-
 Grains ExternalFix::grains()
 {
   Grains g = arrays();
@@ -263,58 +228,6 @@ Grains ExternalFix::grains()
   return g;
 }
 
-PairList ExternalFix::pairs(const Grains &g)
-{
-  const int count = library_.neighlist_num_elements(library_.handle, list_);
-  atoms_.resize(count);
-  counts_.resize(count);
-  first_.resize(count);
-  for (int k = 0; k < count; ++k)
-    library_.neighlist_element_neighbors(library_.handle, list_, k, &atoms_[k], &counts_[k], &first_[k]);
-  PairList p;
-  p.count = count;
-  p.atom = atoms_.data();
-  p.neighbors = counts_.data();
-  p.first = first_.data();
-  p.cross_pairs_twice = setting("newton_pair") == 0;
-  // Builds before 2023 do not tell the list's age (-1): every list is taken as new, which weakens the check on it.
-  p.just_built = setting("neigh_ago") <= 0;
-  const bool at_its_places = p.just_built || new_list_;
-  if (at_its_places || list_reach_ == 0)
-    list_reach_ = reach_.measure(g, library_.per_atom<int>("type"), setting("ntypes"), ranks_.get());
-  if (at_its_places) images_ = find_images();
-  p.reach = list_reach_;
-  reach_.tell_cutoffs(p, library_.per_atom<int>("type"), setting("ntypes"));
-  p.images = images_;
-  if (at_its_places)
-    leaves_out_pairs_ = reach_.leaves_out_pairs(g, p, timestep(), library_.get_natoms(library_.handle), ranks_.get());
-  p.excludes = leaves_out_pairs_;
-  new_list_ = false;
-  return p;
-}
-
-// Which atoms had images on this rank when the list was built: all within the communication cutoff of its part of the
-// box. Along an axis that is not periodic there is nothing beyond the outermost parts.
-Images ExternalFix::find_images() const
-{
-  Images images;
-  const int *periodic = library_.global<int>("periodicity");
-  const double *box[] = {library_.global<double>("boxlo"), library_.global<double>("boxhi")};
-  const double *part[] = {library_.global<double>("sublo"), library_.global<double>("subhi")};
-  images.distance = std::max(reach_.cutoff(), image_cutoff_);
-  if (!ranks_ && periodic && !periodic[0] && !periodic[1] && !periodic[2]) images.distance = INFINITY;
-  const bool known = periodic && box[0] && box[1] && part[0] && part[1] && setting("triclinic") == 0;
-  if (!known) return images;
-  images.boxed = true;
-  for (int d = 0; d < 3; ++d) {
-    images.periodic[d] = periodic[d] && d < setting("dimension");
-    const bool lowest = part[0][d] <= box[0][d], highest = part[1][d] >= box[1][d];
-    images.lo[d] = lowest && !images.periodic[d] ? -INFINITY : part[0][d] - images.distance;
-    images.hi[d] = highest && !images.periodic[d] ? INFINITY : part[1][d] + images.distance;
-  }
-  return images;
-}
-
 std::vector<std::string> ExternalFix::take_remarks()
 {
   std::vector<std::string> remarks = step_.take_remarks();
@@ -324,12 +237,31 @@ std::vector<std::string> ExternalFix::take_remarks()
   return remarks;
 }
 
+void ExternalFix::record_walls(const State &state)
+{
+  if (wall_loads_.empty()) return;
+  collect_wall_touches(state, wall_touches_);
+  std::fill(wall_loads_.begin(), wall_loads_.end(), WallLoad{});
+  for (const WallTouch &touch : wall_touches_) {
+    const std::size_t wall = std::size_t(touch.wall);
+    add_touch(wall_loads_[wall], touch, torque_point(*pair_.keywords().walls[wall].shape));
+  }
+}
+
+std::vector<WallLoad> ExternalFix::wall_loads() const
+{
+  std::vector<WallLoad> loads = wall_loads_;
+  if (ranks_ && !loads.empty()) ranks_->sum({loads[0].data(), loads.size() * loads[0].size()});
+  return loads;
+}
+
 // LAMMPS' arrays, tags among them, are others by the time that somebody asks.
 void ExternalFix::record(std::int64_t timestep)
 {
   const State &state = step_.state();
   contact_rows_.resize(state.table.contacts.size() * contact_columns(state.in.settings));
   fill_contact_rows(state, contact_rows_.data());
+  record_walls(state);
   const StepReport &report = step_.report();
   StatsRow row{timestep, {}, report.seconds_contacts, report.seconds_solver};
   for (int c = 0; c < report_columns; ++c) row.columns[c] = report_column(report, c);

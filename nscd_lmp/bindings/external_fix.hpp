@@ -6,8 +6,10 @@
 #include "list_reach.hpp"
 #include "obstacle/obstacle.hpp"
 #include "python_ranks.hpp"
+#include "scene/wall_touches.hpp"
 #include "step/report.hpp"
 #include "step/step.hpp"
+#include "told_pair.hpp"
 
 #include <nanobind/nanobind.h>
 
@@ -40,12 +42,14 @@ class ExternalFix {
   const Step &step() const { return step_; }
   // Of the last step that was taken, contact after contact, as fill_contact_rows has them.
   const std::vector<double> &contact_rows() const { return contact_rows_; }
+  // Of the same step, wall after wall, over all ranks, all of which have to ask.
+  std::vector<WallLoad> wall_loads() const;
   // Hands over the rows since the last call.
   std::vector<StatsRow> take_stats() { return std::exchange(stats_, {}); }
   std::vector<std::string> take_remarks();
   std::vector<std::string> doubts() const;  // about a scene before its first step
   // Before runs. `held`: bits of the groups of fix freeze; `movers`: fixes move grains that do not integrate them.
-  void set_listed_pairs(ListedPairs listed) { reach_.set(std::move(listed)); }
+  void set_listed_pairs(ListedPairs listed);
   void set_fixes(int held, bool movers) { held_ = held, movers_ = movers; }
   // Communication cutoff, m, up to which there are images; if it is not known they reach as far as the list.
   void set_image_cutoff(double cutoff) { image_cutoff_ = cutoff; }
@@ -65,6 +69,7 @@ class ExternalFix {
   int setting(const char *name) const;
   void require_atoms() const;
   void require_last() const;
+  void take_materials();
   void find_list();
   Grains arrays();
   Grains grains();
@@ -74,11 +79,14 @@ class ExternalFix {
   PairList pairs(const Grains &grains);
   Images find_images() const;
   void record(std::int64_t timestep);
+  void record_walls(const State &state);
   std::int64_t timestep() const;
 
   Library library_;
   std::string id_;
   int group_bit_;
+  ToldPair pair_;
+  std::string materials_;                // of pair style nscd, as the step has them
   std::unique_ptr<PythonRanks> ranks_;   // none on one rank
   nanobind::object find_homes_;
   Step step_;
@@ -89,6 +97,8 @@ class ExternalFix {
   Box box_;
   std::vector<StatsRow> stats_;
   std::vector<double> contact_rows_;
+  std::vector<WallTouch> wall_touches_;
+  std::vector<WallLoad> wall_loads_;     // of this rank
   ListReach reach_;
   double list_reach_ = 0;
   bool new_list_ = true;              // a run has begun with one

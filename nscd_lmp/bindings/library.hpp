@@ -20,6 +20,8 @@ struct Library {
   int (*neighlist_num_elements)(void *, int) = nullptr;
   void (*neighlist_element_neighbors)(void *, int, int, int *, int *, int **) = nullptr;
   void (*force_timeout)(void *) = nullptr;
+  // Of the pair style, by names of its own; null in builds before 2025.
+  void *(*extract_pair)(void *, const char *) = nullptr;
   int (*id_count)(void *, const char *) = nullptr;
   int (*id_name)(void *, const char *, int, char *, int) = nullptr;
 

@@ -9,6 +9,19 @@
 
 namespace nscd {
 
+int ListReach::take(ToldList told)
+{
+  told_ = std::move(told);
+  return told_.number;
+}
+
+// Of two types, from 0.
+double ListReach::cutoff_of(int a, int b, int types) const
+{
+  if (!told_.cutoffs.empty()) return told_.cutoffs[std::size_t(a + 1) * (types + 1) + b + 1];
+  return listed_.cutoff - (listed_.shorter.empty() ? 0 : listed_.shorter[std::size_t(a) * types + b]);
+}
+
 double ListReach::measure(const Grains &g, const int *type, int types, Ranks *ranks) const
 {
   std::vector<double> of_type(2 * types, 0.0);   // largest radius, and whether one moves
@@ -22,21 +35,22 @@ double ListReach::measure(const Grains &g, const int *type, int types, Ranks *ra
   for (int a = 0; a < types; ++a)
     for (int b = a; b < types; ++b) {
       const bool can_meet = of_type[a] > 0 && of_type[b] > 0 && of_type[types + a] + of_type[types + b] > 0;
-      const double cutoff = listed_.cutoff - (listed_.shorter.empty() ? 0 : listed_.shorter[a * types + b]);
-      if (can_meet) reach = std::min(reach, cutoff - of_type[a] - of_type[b]);
+      if (can_meet) reach = std::min(reach, cutoff_of(a, b, types) - of_type[a] - of_type[b]);
     }
-  return reach;
+  return told_.cutoffs.empty() ? reach : std::min(reach, told_.beyond_radii);
 }
 
 void ListReach::tell_cutoffs(PairList &pairs, const int *type, int types)
 {
-  pairs.cutoff = listed_.cutoff;
-  if (listed_.shorter.empty()) return;
+  const bool told = !told_.cutoffs.empty();
+  if (told) pairs.beyond_radii = told_.beyond_radii;
+  else pairs.cutoff = listed_.cutoff;
+  if (!told && listed_.shorter.empty()) return;
   const std::size_t width = types + 1;
   cutoffs_.assign(width * width, 0);
   for (int a = 0; a < types; ++a)
     for (int b = 0; b < types; ++b)
-      cutoffs_[(a + 1) * width + b + 1] = listed_.cutoff - listed_.shorter[std::size_t(a) * types + b];
+      cutoffs_[(a + 1) * width + b + 1] = cutoff_of(a, b, types);
   pairs.types = types + 1;
   pairs.type = type;
   pairs.cutoffs = cutoffs_.data();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "parallel/ranks.hpp"
+#include "scene/list/told_list.hpp"
 #include "scene/views.hpp"
 
 #include <string>
@@ -20,7 +21,10 @@ struct ListedPairs {
 
 class ListReach {
  public:
-  void set(ListedPairs listed) { listed_ = std::move(listed); }
+  void set(ListedPairs listed) { listed_ = std::move(listed), told_ = {}; }
+  // What the pair style itself tells, in place of that; returns the list's number.
+  int take(ToldList told);
+  double told_images() const { return told_.images; }
   const std::string &pair_style() const { return listed_.pair_style; }
   double cutoff() const { return listed_.cutoff; }
 
@@ -36,7 +40,10 @@ class ListReach {
   bool leaves_out_pairs(const Grains &grains, const PairList &pairs, std::int64_t timestep, double atoms, Ranks *ranks);
 
  private:
+  double cutoff_of(int a, int b, int types) const;
+
   ListedPairs listed_;
+  ToldList told_;
   std::vector<double> cutoffs_;   // (types + 1, types + 1); LAMMPS counts types from 1
   std::int64_t next_audit_ = 0;   // timestep; 0: the run begins
   bool leaves_out_ = false;

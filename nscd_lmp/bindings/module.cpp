@@ -106,6 +106,7 @@ nscd::Library make_library(const nb::dict &addresses)
   load("lammps_neighlist_num_elements", library.neighlist_num_elements);
   load("lammps_neighlist_element_neighbors", library.neighlist_element_neighbors);
   load("lammps_force_timeout", library.force_timeout);
+  if (addresses.contains("lammps_extract_pair")) load("lammps_extract_pair", library.extract_pair);
   load("lammps_id_count", library.id_count);
   load("lammps_id_name", library.id_name);
   return library;
@@ -122,6 +123,12 @@ nb::ndarray<nb::numpy, double> contact_rows(const ExternalFix &fix)
   const std::size_t columns = nscd::contact_columns(fix.step().settings());
   const std::vector<double> &rows = fix.contact_rows();
   return make_array<double>(rows.size() / columns, columns, [&](auto k, auto c) { return rows[k * columns + c]; });
+}
+
+nb::ndarray<nb::numpy, double> wall_loads(const ExternalFix &fix)
+{
+  const std::vector<nscd::WallLoad> loads = fix.wall_loads();
+  return make_array<double>(loads.size(), nscd::WallLoad{}.size(), [&](auto k, auto c) { return loads[k][c]; });
 }
 
 nb::dict traffic(const ExternalFix &fix)
@@ -226,6 +233,7 @@ void bind_external_fix(nb::module_ &m)
       .def("take_stats", &take_stats)
       .def("traffic", &traffic)
       .def("contact_rows", &contact_rows)
+      .def("wall_loads", &wall_loads)
       .def("describe", [](const ExternalFix &fix) { return nscd::describe(fix.step()); });
 }
 

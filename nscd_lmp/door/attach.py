@@ -18,7 +18,7 @@ from nscd_lmp.door.contact_system import ContactSystem
 from nscd_lmp.door.door import Door
 from nscd_lmp.door.materials import Material, material_words
 from nscd_lmp.door.scene import walls_of
-from nscd_lmp.door.walls import Plane, check_walls
+from nscd_lmp.door.walls import Wall, check_walls
 
 PythonSolver = Callable[[ContactSystem], NDArray[np.float64]]
 
@@ -33,7 +33,7 @@ def attach(
     friction: float | Literal["stick"] = 0.0,
     e_t: float = 0.0,
     materials: Mapping[tuple[int, int], Material] | None = None,
-    walls: Sequence[Plane] | None = None,
+    walls: Sequence[Wall] | None = None,
     inertia: Literal["sphere", "disc"] | None = None,
     accuracy: Literal["loose", "normal", "tight"] | None = None,
     tol: float | None = None,
@@ -53,7 +53,8 @@ def attach(
 ) -> Attached:
     """Make the grains of a group rigid: the following runs of `lmp` integrate them by contact dynamics.
 
-    Call it when atoms, pair style (``pair_style zero CUTOFF`` will do) and neighbor settings are there. Fixes
+    Call it when atoms, pair style and neighbor settings are there. ``pair_style nscd`` has list and materials, and
+    its ``pair_coeff`` may change between runs; ``pair_style zero CUTOFF`` serves in builds of LAMMPS without it. Fixes
     that exert forces may come before or after.
 
     Parameters
@@ -77,8 +78,9 @@ def attach(
         Tangential restitution of contacts without their own; with friction only; 0 to 1.
     materials : dict, optional
         What contacts of two types of atoms have of their own: ``{(1, 2): nscd_lmp.Material(friction=0.3)}``. Of several
-        that name a pair the later ones hold.
-    walls : sequence of Plane, optional
+        that name a pair the later ones hold. With ``pair_style nscd`` give them to its ``pair_coeff``.
+    walls : sequence of Wall, optional
+        :class:`nscd_lmp.Plane`, :class:`nscd_lmp.Planes`, :class:`nscd_lmp.Cylinder`, and how they move from here on.
         None: those that :func:`nscd_lmp.scene` was given, else none.
     inertia : str, optional
         ``"sphere"`` (2/5 m r^2), or ``"disc"`` (1/2 m r^2) in `dimension 2`; with friction only. None: ``"sphere"``, in

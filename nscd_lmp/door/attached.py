@@ -63,6 +63,15 @@ class Attached:
         rows = self._fix.contact_rows()
         return {name: rows[:, column].copy() for column, name in enumerate(_core.CONTACT_COLUMNS[: rows.shape[1]])}
 
+    def wall_forces(self) -> NDArray[np.float64]:
+        """Return what each wall carried in the last step, an array of shape (walls, 7).
+
+        The mean force of the step on the wall (3 columns, in LAMMPS' unit of force), its torque (3) about the point of
+        the wall's rotation, or about the origin where it does not rotate, and the number of contacts that push. Walls
+        are in the order of `walls`, grains of all ranks count, and all ranks have to make the call.
+        """
+        return self._fix.wall_loads()
+
     @property
     def traffic(self) -> dict[str, float]:
         """Return what this rank has sent to others in the steps taken so far; zeros on one rank.

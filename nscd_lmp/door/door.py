@@ -34,6 +34,7 @@ ADDRESSES = (
 # Commands that run steps, the first directly, the others by what they contain; and those that change the list.
 RUNNING = ("run", "include", "jump", "if", "next")
 LIST_COMMANDS = ("pair_", "neigh", "comm_modify", "read_", "clear", "newton")
+OPTIONAL_ADDRESSES = ("lammps_extract_pair",)  # that older builds lack
 COMMAND_METHODS = ("command", "commands_list", "commands_string", "file")
 
 
@@ -55,7 +56,8 @@ class Door:
             )
         self.inspection.require_spheres()
         listed = self.inspection.listed_pairs()
-        addresses = {name: ctypes.cast(getattr(lmp.lib, name), ctypes.c_void_p).value for name in ADDRESSES}
+        there = [*ADDRESSES, *(name for name in OPTIONAL_ADDRESSES if hasattr(lmp.lib, name))]
+        addresses = {name: ctypes.cast(getattr(lmp.lib, name), ctypes.c_void_p).value for name in there}
         addresses["handle"] = address(lmp.lmp)
         group_bit = self.inspection.group_bit(group)
         find_homes = ghost_homes.finder(lmp, ranks) if ranks else None

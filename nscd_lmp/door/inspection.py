@@ -27,7 +27,7 @@ class ListedPairs:
     """Which neighbor list has the contact pairs, and how far it reaches; the arguments of ``set_listed_pairs``.
 
     `cutoff` is the largest pair cutoff plus skin (m), `shorter` by how much those of pairs of types are shorter, row by
-    row, or empty.
+    row, or empty. Pair style nscd tells all but its name by itself, as each run begins.
     """
 
     pair_style: str
@@ -94,11 +94,13 @@ class Inspection:
     def listed_pairs(self) -> ListedPairs:
         """Return which neighbor list gives the contact pairs, and how far it reaches."""
         style, sub_styles = self._pair_styles()
-        if "nscd" in (style, *sub_styles):
+        if sub_styles.count("nscd") > 1:
             raise NscdError(
-                "pair_style nscd has materials that attach does not read: use fix nscd, or give attach its materials"
-                " and `pair_style zero CUTOFF` its list"
+                "a hybrid pair style has nscd more than once, and contacts have one material: use it once, for all"
+                " types"
             )
+        if "nscd" in (style, *sub_styles):
+            return ListedPairs("nscd", 0.0, [], True)
         # In hybrid styles `zero`, which has one cutoff for all, is there for the contacts.
         listed = style if not sub_styles else "zero" if "zero" in sub_styles else sub_styles[0]
         types = self._setting("ntypes")
@@ -128,8 +130,9 @@ class Inspection:
         found = re.search(r"Atoms +=.*style = (\S+)", text)
         if not found or found[1] == "none":
             raise NscdError(
-                "no pair style is defined, so there is no neighbor list: use pair_style zero CUTOFF with a"
-                " cutoff of the largest diameter plus what two grains can move in a step, and pair_coeff * *"
+                "no pair style is defined, so there is no neighbor list: use pair_style nscd, in other builds of LAMMPS"
+                " pair_style zero CUTOFF with a cutoff of the largest diameter plus what two grains can move in a step,"
+                " and pair_coeff * *"
             )
         sub_styles = re.search(r"Hybrid sub-styles:(.*)", text)
         return found[1], sub_styles[1].split() if sub_styles else []

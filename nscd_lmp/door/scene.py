@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from nscd_lmp._core import NscdError
 from nscd_lmp.door.create import check_numbers, create_grains, grain_types, per_grain_rows
-from nscd_lmp.door.walls import Plane, check_walls
+from nscd_lmp.door.walls import Wall, check_walls
 
 Array = NDArray[np.float64]
 
@@ -36,7 +36,7 @@ def scene(
     type: ArrayLike = 1,
     box: ArrayLike | None = None,
     periodic: str = "",
-    walls: Sequence[Plane] = (),
+    walls: Sequence[Wall] = (),
     gravity: ArrayLike = 0.0,
     dimension: int = 3,
     speed: float | None = None,
@@ -69,9 +69,10 @@ def scene(
         not periodic stops the run. None: the box grows with the grains, and nothing leaves it.
     periodic : str
         Axes along which the box repeats, such as ``"xy"``; they need `box`. In dimension 2 z always does.
-    walls : sequence of Plane
+    walls : sequence of Wall
         :func:`nscd_lmp.attach` takes them for this instance, unless it is given others. LAMMPS itself has no walls:
-        with ``fix nscd`` append ``${nscd_walls}``, a variable that has them in words. Without, it warns.
+        with ``fix nscd`` append ``${nscd_walls}``, a variable that has them in words. Without, it warns. Walls that
+        move are for `attach`; ``fix nscd`` refuses them, and names ``fix wall/nscd``.
     gravity : float or three numbers, m/s^2
         A number points along -z, in dimension 2 along -y.
     dimension : int
@@ -179,7 +180,7 @@ def gravity_fix(gravity: ArrayLike, planar: bool = False) -> str:
     return f"fix gravity all gravity {math.hypot(*along)!r} vector {' '.join(map(repr, along))}"
 
 
-def walls_of(lmp: Any) -> tuple[Plane, ...]:
+def walls_of(lmp: Any) -> tuple[Wall, ...]:
     """Return the walls of the scene that an instance was made with; none after LAMMPS' ``clear``."""
     return getattr(lmp, WALLS, ()) if hasattr(lmp, WALLS) and lmp.has_id("region", REGION) else ()
 
@@ -248,19 +249,20 @@ def _around(x: Array, margin: float) -> Array:
     return np.column_stack([x.min(axis=0) - margin, x.max(axis=0) + margin])
 
 
-def _fastest(x: Array, v: Array, pull: Array, walls: Sequence[Plane], bounds: Array | None) -> float:
+def _fastest(x: Array, v: Array, pull: Array, walls: Sequence[Wall], bounds: Array | None) -> float:
     """Return the speed to count on: in a collision a grain may get twice that of the other, and falls add to it."""
-    begin = 2 * float(np.linalg.norm(v, axis=1).max())
+    known = [wall for wall in walls if isinstance(wall, Wall)]
+    pushed = [motion.fastest(x) for wall in known for motion in wall.motions()]
+    begin = 2 * max(float(np.linalg.norm(v, axis=1).max()), *pushed, 0.0)
     strength = float(np.linalg.norm(pull))
     if not strength:
         return begin
     up = -pull / strength
     drop = np.full(len(x), np.ptp(x @ up) if bounds is None else np.abs(up) @ np.ptp(bounds, axis=1))
-    for wall in (wall for wall in walls if isinstance(wall, Plane)):
-        normal = np.array(wall.normal, dtype=float)
+    for point, normal in (plane for wall in known for plane in wall.half_spaces(up)):
         facing = float(normal @ up)
         if facing > 1e-6 * float(np.linalg.norm(normal)):  # grains fall on it
-            height = (x - np.array(wall.point, dtype=float)) @ normal / facing
+            height = (x - point) @ normal / facing
             drop = np.maximum(height, 0) if bounds is None else np.minimum(np.maximum(height, 0), drop)
     return math.sqrt(begin**2 + 2 * strength * float(drop.max()))
 

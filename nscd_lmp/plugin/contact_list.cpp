@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "contact_list.hpp"
 
+#include "scene/list/told_list.hpp"
+
+#include <atom.h>
 #include <comm.h>
 #include <domain.h>
 #include <force.h>
 #include <neighbor.h>
 #include <utils.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace LAMMPS_NS;
@@ -47,6 +51,25 @@ ContactList LAMMPS_NS::find_contact_list(LAMMPS *lmp)
     if (limit > best.limit) best = {complete(list), limit};
   }
   return best;
+}
+
+std::vector<double> LAMMPS_NS::list_cutoffs(LAMMPS *lmp)
+{
+  const std::size_t types = std::size_t(lmp->atom->ntypes) + 1;   // from 1
+  std::vector<double> cutoffs(types * types, 0);
+  if (!lmp->neighbor->cutneighsq) return cutoffs;   // before the first run
+  for (std::size_t a = 1; a < types; ++a)
+    for (std::size_t b = 1; b < types; ++b) cutoffs[a * types + b] = std::sqrt(lmp->neighbor->cutneighsq[a][b]);
+  return cutoffs;
+}
+
+std::vector<double> LAMMPS_NS::told_list(LAMMPS *lmp)
+{
+  const ContactList found = find_contact_list(lmp);
+  const Neighbor *neighbor = lmp->neighbor;
+  const auto end = neighbor->lists + neighbor->nlist, place = std::find(neighbor->lists, end, found.list);
+  const int number = found.list && place != end ? int(place - neighbor->lists) : -1;
+  return nscd::ToldList{number, lmp->atom->ntypes, found.limit, images_of(lmp).distance, list_cutoffs(lmp)}.packed();
 }
 
 nscd::Images LAMMPS_NS::images_of(LAMMPS *lmp)

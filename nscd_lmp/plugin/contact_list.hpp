@@ -7,6 +7,8 @@
 #include <lammps.h>
 #include <neigh_list.h>
 
+#include <vector>
+
 namespace LAMMPS_NS {
 
 struct ContactList {
@@ -20,5 +22,11 @@ nscd::Images images_of(LAMMPS *lmp);
 
 // Of a hybrid pair style the list that those of its sub-styles are taken from.
 ContactList find_contact_list(LAMMPS *lmp);
+
+// (types + 1, types + 1) of centres, m: pair cutoffs plus skin, as lists are built with.
+std::vector<double> list_cutoffs(LAMMPS *lmp);
+
+// The list, cutoffs and images in numbers, as nscd::ToldList has them.
+std::vector<double> told_list(LAMMPS *lmp);
 
 }    // namespace LAMMPS_NS

@@ -6,6 +6,7 @@
 #include "pair_nscd.hpp"
 #include "progress.hpp"
 #include "scene/doubts.hpp"
+#include "settings/told_pairs.hpp"
 #include "wall_nscd.hpp"
 
 #include <atom.h>
@@ -48,14 +49,6 @@ auto in_step(bigint step, Body body)
   } catch (const nscd::Error &refused) {
     nscd::fail(refused.what(), " (step ", step, ")");
   }
-}
-
-// Of its own, beside those of the pair style.
-void require_no_materials(const nscd::Settings &settings)
-{
-  if (!settings.pairs.empty())
-    nscd::fail("materials of types of atoms are given to pair style nscd: use `pair_coeff ", settings.pairs[0].types,
-               " ", written(settings.pairs[0].own), "` in place of keyword material");
 }
 
 // The core's alone: it knows no regions.
@@ -133,7 +126,7 @@ nscd::Settings FixNscd::with_pair(nscd::Settings settings) const
 {
   const PairNscd *style = pair();
   if (!style) return settings;
-  require_no_materials(settings);
+  nscd::require_no_pairs(settings, "keyword material");
   settings.pairs = style->materials();
   settings.mixing = style->mixing();
   return settings;
@@ -275,10 +268,10 @@ void FixNscd::measure_list_reach()
   }
   ranks_.max(found);  // the largest of a type may be on another rank
   list_reach_ = INFINITY;
-  list_cutoffs_.assign(std::size_t(types) * types, 0);
+  list_cutoffs_ = list_cutoffs(lmp);
   for (int a = 1; a < types; ++a)
     for (int b = 1; b < types; ++b) {
-      const double cutoff = list_cutoffs_[a * types + b] = std::sqrt(neighbor->cutneighsq[a][b]);
+      const double cutoff = list_cutoffs_[a * types + b];
       if (largest[a] > 0 && largest[b] > 0 && moves[a] + moves[b] > 0)
         list_reach_ = std::min(list_reach_, cutoff - largest[a] - largest[b]);
     }

@@ -2,6 +2,8 @@
 #include "pair_nscd.hpp"
 
 #include "base/error.hpp"
+#include "contact_list.hpp"
+#include "settings/told_pairs.hpp"
 
 #include <atom.h>
 #include <comm.h>
@@ -130,9 +132,15 @@ nscd::Mixing PairNscd::mixing() const
 
 std::string PairNscd::described() const
 {
-  std::string text = "mix " + std::to_string(mix_flag);
-  for (const nscd::PairMaterial &pair : materials()) text += ", " + pair.types + " " + written(pair.own);
-  return text;
+  return nscd::told(materials(), mixing());
+}
+
+// What nscd_lmp.attach asks by LAMMPS' C interface, which has no names for its types: `dim` stays unknown.
+void *PairNscd::extract(const char *what, int & /*dim*/)
+{
+  if (strcmp(what, "nscd/materials") == 0) return (told_materials_ = described()).data();
+  if (strcmp(what, "nscd/list") == 0) return (told_list_ = told_list(lmp)).data();
+  return nullptr;
 }
 
 void PairNscd::init_style()

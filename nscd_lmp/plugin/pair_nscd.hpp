@@ -25,13 +25,14 @@ class PairNscd : public Pair {
   void read_restart(FILE *file) override;
   void write_data(FILE *file) override;
   void write_data_all(FILE *file) override;
+  void *extract(const char *what, int &dim) override;
   double memory_usage() override;
 
   // As they were given, a type with itself or a larger one.
   std::vector<nscd::PairMaterial> materials() const;
   // How the others come about, as `pair_modify mix` says.
   nscd::Mixing mixing() const;
-  // All of that in words; never empty.
+  // All of that in words, as settings/told_pairs.hpp has them; never empty.
   std::string described() const;
 
  private:
@@ -48,6 +49,8 @@ class PairNscd : public Pair {
   std::vector<nscd::OwnMaterial> own_;     // (types + 1, types + 1), upper half
   std::vector<double> largest_radius_;     // (types + 1), m, of atoms that are there or that a fix will insert
   double mean_radius_ = 0;                 // m
+  std::string told_materials_;             // for extract, as is the list
+  std::vector<double> told_list_;
   double chosen_skin_ = -1;                // m
   bool chosen_multi_ = false;
 };

@@ -208,22 +208,12 @@ std::array<double, 3> FixWallNscd::torque_point() const
 
 void FixWallNscd::add(const nscd::WallTouch &touch)
 {
-  const auto about = torque_point();
-  double arm[3], on_wall[3];
-  for (int d = 0; d < 3; ++d) {
-    on_wall[d] = -touch.force[d];
-    arm[d] = touch.place[d] - about[std::size_t(d)];
-    sums_[std::size_t(force + d)] += on_wall[d];
-  }
-  sums_[torque] += arm[1] * on_wall[2] - arm[2] * on_wall[1];
-  sums_[torque + 1] += arm[2] * on_wall[0] - arm[0] * on_wall[2];
-  sums_[torque + 2] += arm[0] * on_wall[1] - arm[1] * on_wall[0];
-  const double size = std::hypot(on_wall[0], on_wall[1], on_wall[2]);
-  sums_[contacts] += size > 0;
+  nscd::add_touch(sums_, touch, torque_point());
+  const double size = std::hypot(touch.force[0], touch.force[1], touch.force[2]);
   if (!wants_rows_ || size == 0) return;
   double *row = array_atom[touch.grain];
   row[0] = 1;
-  for (int d = 0; d < 3; ++d) row[1 + d] -= on_wall[d];
+  for (int d = 0; d < 3; ++d) row[1 + d] += touch.force[d];
   if (size > strongest_[std::size_t(touch.grain)]) {
     strongest_[std::size_t(touch.grain)] = size;
     for (int d = 0; d < 3; ++d) row[4 + d] = touch.place[d];

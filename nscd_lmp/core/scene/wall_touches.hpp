@@ -4,6 +4,7 @@
 
 #include "scene/state.hpp"
 
+#include <array>
 #include <vector>
 
 namespace nscd {
@@ -16,5 +17,12 @@ struct WallTouch {
 
 // Those of the step just taken, while its arrays are there. Contacts that push nothing are among them.
 void collect_wall_touches(const State &state, std::vector<WallTouch> &found);
+
+// What a wall carries: the force on it (3), its torque about a point (3), and how many contacts push.
+using WallLoad = std::array<double, 7>;
+void add_touch(WallLoad &load, const WallTouch &touch, const std::array<double, 3> &about);
+
+// What torques of a wall are about: the point of its rotation, else the origin, m.
+std::array<double, 3> torque_point(const Obstacle &wall);
 
 }    // namespace nscd
