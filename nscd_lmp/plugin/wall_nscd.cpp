@@ -86,6 +86,8 @@ FixWallNscd::FixWallNscd(LAMMPS *lmp, int narg, char **arg) :
   } catch (const nscd::Error &refused) {
     error->all(FLERR, "Fix wall/nscd {}: {}", id, without_name(refused.what(), name_of(id)));
   }
+  if (comm->me == 0 && shape_ && !shape_->told().empty())
+    utils::logmesg(lmp, "fix wall/nscd {}: {}\n", id, shape_->told());
   if (!wants_rows_) return;
   peratom_flag = 1;
   size_peratom_cols = row_columns;

@@ -219,6 +219,12 @@ TEST(a_mesh_fits_scenes_in_the_plane_and_periodic_boxes_or_is_refused)
   side.require_planar("wall 1");
 }
 
+TEST(a_mesh_tells_of_its_open_edges)
+{
+  CHECK(mesh_of(box_shape(2)).told() == "48 triangles, 26 corners, closed");
+  CHECK(mesh_of(tube(3, 4, 24, 8)).told() == "384 triangles, 216 corners, 48 open edges, beside which grains may pass");
+}
+
 // In a box that ends a radius ahead of it, or which it crosses alike on both sides; not where it ends at a face.
 TEST(a_mesh_lies_alike_on_both_faces_of_a_periodic_box)
 {

@@ -8,6 +8,7 @@
 #include "obstacle/stl.hpp"
 
 #include <cmath>
+#include <sstream>
 
 namespace nscd {
 
@@ -78,6 +79,18 @@ void Mesh::require_planar(const std::string &name) const
       fail(name, ": a triangle at (", face.corner[0], ", ", face.corner[1], ", ", face.corner[2], ") has a normal ",
            "with a z component of ", face.normal[2], ", but the scene is planar (dimension 2): use a mesh of ",
            "triangles that are all parallel to z and reach to both sides of the grains' plane, or dimension 3");
+}
+
+std::string Mesh::told() const
+{
+  std::size_t open = 0;
+  for (std::size_t side = 0; side < surface_.sides.size(); ++side)
+    open += std::size_t(surface_.sides[side].next) == side;
+  std::ostringstream text;
+  text << surface_.faces.size() << " triangles, " << surface_.vertices.size() << " corners, ";
+  if (open == 0) text << "closed";
+  else text << open << " open edges, beside which grains may pass";
+  return text.str();
 }
 
 void Mesh::require_repeats(const std::string &name, const BoxEdges &box) const

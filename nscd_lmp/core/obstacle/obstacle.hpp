@@ -62,6 +62,9 @@ class Obstacle {
   // No part of its surface that is within `near` (m) of the point moves faster, m/s.
   virtual double fastest(const Vec4 & /*point*/, double /*near*/) const { return 0; }
 
+  // What a user may want to compare with what was meant; or nothing.
+  virtual std::string told() const { return {}; }
+
   // What does not fit raises Error; `name` is "wall 2".
   virtual void require_planar(const std::string &name) const = 0;                       // dimension 2
   virtual void require_repeats(const std::string &name, const BoxEdges &box) const = 0;  // in periodic boxes
