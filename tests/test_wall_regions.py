@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -212,6 +213,19 @@ def test_a_funnel_lets_grains_through():
     largest = series(lmp, 1000, lambda lmp: lmp.extract_fix("hard", 0, 1, 9), every=10)
     assert largest.max() < 5e-4
     assert (state(lmp)[0][:, 2] < -1).all()
+    lmp.close()
+
+
+@pytest.mark.overlaps_not_asked("the rim is no wall to LAMMPS")
+def test_a_grain_falls_through_a_hole_that_is_too_small_and_the_run_tells(tmp_path):
+    """A rim between two parts of a region has no surface: a limit of regions, which docs/wall_nscd.md names."""
+    lmp = walled(grains([0.05, 0, 0.15], R, MASS), "region plate plane 0 0 0 0 0 1", "fix hard all nscd")
+    lmp.commands_list(["region hole cylinder z 0 0 0.08 -2 0.5", "region r union 2 plate hole"])
+    lmp.commands_list(["fix w all wall/nscd region r", f"log {tmp_path}/log", "run 300", "log none"])
+    assert height(lmp) < -0.2
+    assert re.search(
+        r"WARNING: Fix nscd hard: grains overlap by up to 0\.\d+ of the smaller radius", (tmp_path / "log").read_text()
+    )
     lmp.close()
 
 
