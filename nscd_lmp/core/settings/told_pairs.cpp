@@ -19,7 +19,8 @@ Mixing read_mixing(std::istream &line)
   std::string word, name;
   line >> word >> name;
   const auto found = std::find(mixing_names.begin(), mixing_names.end(), name);
-  if (word != "mix" || found == mixing_names.end()) fail("materials of pairs are mixed by '", name, "', an unknown way");
+  if (word != "mix" || found == mixing_names.end())
+    fail("materials of pairs are mixed by '", name, "', an unknown way");
   return Mixing(found - mixing_names.begin());
 }
 
