@@ -236,8 +236,8 @@ FILES = {
             "part_of_contact",
         }
     },
-    "lammps_examples": {
-        "lammps_examples.csv": {
+    "example_steps": {
+        "example_steps.csv": {
             "scene",
             "seed",
             "kind",
