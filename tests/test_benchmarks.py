@@ -257,6 +257,25 @@ FILES = {
             "height_off",
         }
     },
+    "lammps_examples": {
+        "lammps_examples.csv": {
+            "example",
+            "grains",
+            "simulated",
+            "cpu_seconds",
+            "cpu_per_time",
+            "springs_cpu_per_time",
+            "ratio",
+            "overlap_ratio",
+            "springs_overlap_ratio",
+            "given_up_steps",
+            "quantity",
+            "result",
+            "springs_result",
+            "kinetic_energy",
+            "springs_kinetic_energy",
+        }
+    },
     "solvers": {
         "solvers.csv": {
             "part",
