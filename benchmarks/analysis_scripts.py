@@ -9,5 +9,6 @@ sys.path.append(str(ROOT / "analysis"))
 
 from chart import STYLE, new_figure, save_figure
 from contact_pairs import find_grain_contacts
+from overlap import compute_overlaps
 
-__all__ = ["STYLE", "find_grain_contacts", "new_figure", "save_figure"]
+__all__ = ["STYLE", "compute_overlaps", "find_grain_contacts", "new_figure", "save_figure"]

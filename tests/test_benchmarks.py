@@ -250,8 +250,8 @@ FILES = {
             "part_of_contact",
         }
     },
-    "lammps_examples": {
-        "lammps_examples.csv": {
+    "example_steps": {
+        "example_steps.csv": {
             "scene",
             "seed",
             "kind",
@@ -269,6 +269,25 @@ FILES = {
             "kinetic_energy",
             "speed_off",
             "height_off",
+        }
+    },
+    "lammps_examples": {
+        "lammps_examples.csv": {
+            "example",
+            "grains",
+            "simulated",
+            "cpu_seconds",
+            "cpu_per_time",
+            "springs_cpu_per_time",
+            "ratio",
+            "overlap_ratio",
+            "springs_overlap_ratio",
+            "given_up_steps",
+            "quantity",
+            "result",
+            "springs_result",
+            "kinetic_energy",
+            "springs_kinetic_energy",
         }
     },
     "solvers": {

