@@ -207,15 +207,16 @@ def test_a_wall_without_a_fix_nscd():
         ),
         (
             "f f p",
-            "xcylinder 2",
-            "fix w: its axis is not along z, in which the box is periodic and the cylinder is not: use that axis, or a "
-            "boundary that is not periodic",
+            "xcylinder 3.05",
+            "fix w: it does not lie alike on the two faces of the box in z, in which the box is periodic, and a grain "
+            "there would miss a part of it: use a boundary that is not periodic, or a wall that ends a radius ahead of "
+            "the faces or goes on alike by a radius beyond them",
         ),
         (
             "p f f",
             "zplane -1 NULL rotate 1 0 0 0 0 0 1",
-            "fix w: it rotates about an axis that is not along x, in which the box is periodic: use that axis, or a "
-            "boundary that is not periodic",
+            "fix w: it rotates about an axis that is not along x, in which the box is periodic, and grains touch it at "
+            "the box' faces: use that axis, or a boundary that is not periodic",
         ),
         (
             "p f f",
@@ -229,6 +230,14 @@ def test_a_wall_without_a_fix_nscd():
 def test_periodic_boxes_that_a_wall_does_not_repeat_in(boundary, wall, message):
     said = refused("region r sphere 2 0 0 2.5", f"fix w all wall/nscd {wall}", "run 0", boundary=boundary)
     assert said == f"Fix nscd hard: {message}"
+
+
+@pytest.mark.parametrize("wall", ["zcylinder 3 rotate 1 0 0 0 0 0 1", "cylinder 0 0 0 0 0 1 2.5 rotate 1 0 0 0 0 0 1"])
+def test_a_wall_that_ends_within_a_periodic_box_is_none_at_its_faces(wall):
+    """Also one that just fits in: no centre of a grain gets to the faces."""
+    lmp = walled(grains([0, 0, 0.1], 0.1, 2.0), "fix hard all nscd", f"fix w all wall/nscd {wall}", boundary="p p f")
+    lmp.command("run 2")
+    lmp.close()
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@
 #include "contact/space.hpp"
 #include "obstacle/kinds.hpp"
 #include "obstacle/obstacle.hpp"
+#include "obstacle/repeats.hpp"
 
 #include <cmath>
 
@@ -37,13 +38,7 @@ class Cylinder final : public ObstacleOf<Cylinder> {
 
   void require_repeats(const std::string &name, const BoxEdges &box) const override
   {
-    constexpr double round_off = 1e-9;
-    for (int d = 0; d < 3; ++d) {
-      const Vec4 edge{box.edge[d][0], box.edge[d][1], box.edge[d][2], 0};
-      if (box.periodic[d] && length(cross(axis_, edge)) > round_off * length(edge))
-        fail(name, ": its axis is not along ", "xyz"[d], ", in which the box is periodic and the cylinder is not: use ",
-             "that axis, or a boundary that is not periodic");
-    }
+    require_alike_at_faces(*this, name, box);
   }
 
  private:

@@ -3,6 +3,7 @@
 
 #include "base/error.hpp"
 #include "contact/space.hpp"
+#include "obstacle/repeats.hpp"
 
 #include <cmath>
 
@@ -82,15 +83,33 @@ void Moved::require_planar(const std::string &name) const
     fail(name, ": it rotates out of the plane of the scene (dimension 2): give it the axis 0 0 1, or use dimension 3");
 }
 
+namespace {
+
+// A wall held at an angle of another course.
+class Held final : public Course {
+ public:
+  Held(const Course &of, double angle) : Course(of), angle_(angle) {}
+  Place at(double) const override { return {Vec4{}, angle_}; }
+  bool shifts_along_z() const override { return false; }
+
+ private:
+  double angle_;
+};
+
+}    // namespace
+
 void Moved::require_repeats(const std::string &name, const BoxEdges &box) const
 {
   constexpr double round_off = 1e-9;
+  constexpr int angles = 6;   // rad, which go round once about
   shape_->require_repeats(name, box);
   for (int d = 0; course_->rotates && d < 3; ++d) {
     const Vec4 edge{box.edge[d][0], box.edge[d][1], box.edge[d][2], 0};
-    if (box.periodic[d] && length(cross(course_->axis, edge)) > round_off * length(edge))
-      fail(name, ": it rotates about an axis that is not along ", "xyz"[d], ", in which the box is periodic: use that ",
-           "axis, or a boundary that is not periodic");
+    if (!box.periodic[d] || length(cross(course_->axis, edge)) <= round_off * length(edge)) continue;
+    for (int angle = 0; angle < angles; ++angle)
+      if (is_touched_at_faces(Moved(shape_, std::make_shared<Held>(*course_, angle)), box, d))
+        fail(name, ": it rotates about an axis that is not along ", "xyz"[d], ", in which the box is periodic, and ",
+             "grains touch it at the box' faces: use that axis, or a boundary that is not periodic");
   }
 }
 

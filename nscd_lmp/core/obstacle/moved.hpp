@@ -25,7 +25,8 @@ class Moved final : public Obstacle {
   double fastest(const Vec4 &point, double near) const override;
 
   void require_planar(const std::string &name) const override;
-  // What turns repeats where its axis lies along all directions in which the box is periodic.
+  // What turns repeats where its axis lies along all directions in which the box is periodic, or where no grain at a
+  // face of the box touches it.
   void require_repeats(const std::string &name, const BoxEdges &box) const override;
 
   const Vec4 &shift() const { return place_.shift; }

@@ -12,4 +12,7 @@ namespace nscd {
 // wall has to lie alike on both faces; raises Error where it does not. `name`: "wall 2".
 void require_alike_at_faces(const Obstacle &wall, const std::string &name, const BoxEdges &box);
 
+// Whether grains at the two faces across edge d of the box can touch it.
+bool is_touched_at_faces(const Obstacle &wall, const BoxEdges &box, int d);
+
 }    // namespace nscd
