@@ -13,6 +13,7 @@ namespace nscd {
 namespace {
 
 constexpr double parts_of_step = 100;
+constexpr double none = -1;   // moment of a contact that is no impact, s
 
 char parts(const State &s, double moment) { return char(parts_of_step * moment / s.in.dt); }
 
@@ -74,14 +75,22 @@ void Bends::begin(State &s)
   s.courses.work = 0;
   struck_.assign(s.motion.bodies.size(), 0);
   s.courses.straight.resize(s.motion.bodies.size());
+  all_changed_ = true;
   for (std::size_t k = 0; k < s.table.contacts.size(); ++k)
     if (s.table.infos[k].curve < 0 && is_straight(s, s.table.contacts[k]))
       turn_to_start(s, k);
 }
 
+// Whether the last look at this contact still holds.
+bool Bends::is_seen(const State &s, const Contact &c) const
+{
+  return !all_changed_ && !s.exec.halo && !changed_[c.i] && !changed_[c.j];
+}
+
 void Bends::find_starts(State &s) const
 {
   for (int i = 0; i < s.moving(); ++i) {
+    if (!all_changed_ && !s.exec.halo && !changed_[i]) continue;
     if (!is_grain(s, i) || s.courses.straight[i]) {
       s.courses.start[i] = Vec4{};
       continue;
@@ -152,6 +161,11 @@ void Bends::look(State &s, const IsImpact &is_impact)
   s.table.impact_moment.open();
   s.table.impact_kick.open();
   for (std::size_t k = 0; k < s.table.contacts.size(); ++k) {
+    if (is_seen(s, s.table.contacts[k])) {
+      if (s.table.impact_moment[k] >= 0) meetings_.push_back(k);
+      continue;
+    }
+    s.table.impact_moment[k] = none;
     const double before = normal_velocity(s.table.contacts[k], s.motion.bodies.data()) + normal_drift(s, k);
     if (plane_at_end(s, k, before) >= 0) continue;
     const auto moment = meet(s, k);
@@ -163,6 +177,8 @@ void Bends::look(State &s, const IsImpact &is_impact)
     s.table.impact_kick[k] = kick;
     meetings_.push_back(k);
   }
+  changed_.assign(s.motion.bodies.size(), 0);
+  all_changed_ = false;
 }
 
 const std::vector<std::size_t> &Bends::first_meetings(State &s)
@@ -192,6 +208,7 @@ void Bends::act(State &s, std::size_t count)
       const Vec4 way = (c.normal * c.impulse + tangential_impulse(s, k)) * (0.5 * s.in.dt - moment);
       s.courses.work += c.impulse * s.table.impact_kick[k];
       for (const int body : {c.i, c.j}) {
+        changed_[body] = 1;
         const double moved = body == c.i ? s.motion.bodies[body][3] : -s.motion.bodies[body][3];
         if (!s.courses.straight[body]) s.courses.shift[body] += way * moved;
         if (c.impulse > 0 && is_grain(s, body)) struck_[body] = std::max(struck_[body], parts(s, moment));
@@ -220,6 +237,7 @@ void Bends::find_contradictions(State &s)
 // Shifts of straight bodies are taken back, and planes between them that would drive pairs apart.
 void Bends::take_back(State &s)
 {
+  all_changed_ = true;
   for (std::size_t b = 0; b < s.courses.straight.size(); ++b)
     if (s.courses.straight[b]) s.courses.shift[b] = Vec4{};
   find_starts(s);

@@ -28,6 +28,7 @@ class Bends {
   void begin(State &state);
   // Finds the impacts that are to come as bodies move now, and fills impact_moment and impact_kick of theirs. Contacts
   // that their planes stop are given the plane of the moment when they meet, or of the end of the step if they do not.
+  // On one rank only contacts of bodies that have changed since the last look are looked at again: few, in most rounds.
   void look(State &state, const IsImpact &is_impact);
   // Of them those that are the first of both their grains, by contact. Collective.
   const std::vector<std::size_t> &first_meetings(State &state);
@@ -41,6 +42,7 @@ class Bends {
 
  private:
   using Parts = std::vector<char>;   // (bodies) hundredths of the step
+  bool is_seen(const State &state, const Contact &contact) const;
   void find_starts(State &state) const;
   double last_struck(const State &state, const Contact &contact) const;
   std::optional<double> meet(State &state, std::size_t k) const;
@@ -57,6 +59,8 @@ class Bends {
   Parts before_;      // what was straight
   Parts struck_;      // when each body was last
   Parts sooner_;      // parts of the step that are left when each body is next
+  Parts changed_;     // whether each body has changed since the last look
+  bool all_changed_ = true;
 };
 
 }    // namespace nscd

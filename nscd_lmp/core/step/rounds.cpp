@@ -153,11 +153,16 @@ void Rounds::resolve_impacts_first(Reason reason)
   const Settings &settings = state_.in.settings;
   for (Contact &c : state_.table.contacts) c.impulse = 0;
   const double tol = solves_.options().stop == Stop::natural && !settings.frictional() ? tol_of_impacts : 1;
-  impacts_left_ = scheme_.impacts(state_, [this, tol](std::size_t count) {
+  const auto solve = [this, tol](std::size_t count) {
     const double norm = keep_free_velocities(state_, 0, count);
     bound_approach_of_impacts(state_, count);
     solves_.begin_budget();
     solves_.solve({count, true, norm, tol}, EnergyLimit::From::solve);
+  };
+  constexpr std::size_t few = 8;   // contacts, each for so many bodies: what all of those cost is little beside the rest
+  impacts_left_ = scheme_.impacts(state_, [&](std::size_t count) {
+    if (state_.exec.halo || solves_.is_custom() || few * count > state_.motion.bodies.size()) return solve(count);
+    few_bodies_.with(state_, count, [&] { solve(count); });
   });
 }
 

@@ -10,6 +10,7 @@
 #include "scene/state.hpp"
 #include "scheme/scheme.hpp"
 #include "step/calm.hpp"
+#include "step/few_bodies.hpp"
 #include "step/list_watch.hpp"
 #include "step/solves.hpp"
 #include "warm_start/warm_start.hpp"
@@ -70,6 +71,7 @@ class Rounds {
   const Sought sought_;
   const bool looks_ahead_;
   ListWatch &watch_;
+  FewBodies few_bodies_;
   Calm calm_;
   Calm::Found calmed_;               // in the last solve
   AlignedVector<Body> free_bodies_;  // as gathered, where impacts may have to be resolved again
