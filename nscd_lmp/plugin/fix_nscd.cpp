@@ -82,7 +82,9 @@ FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks
     nscd::parse_keywords(keywords_, {arg + 3, arg + narg});
     require_own_walls_stand();
     nscd::Settings settings = with_pair(keywords_);
-    if (!settings.frictional()) settings.inertia.reset();   // friction may come by a fix wall/nscd
+    // Friction and restitution may come by a fix wall/nscd.
+    if (!settings.frictional()) settings.inertia.reset();
+    if (!settings.restitutive()) settings.min_bounce = 0;
     step_ = make_step(settings);
     if (const PairNscd *style = pair()) materials_ = style->described();
   });

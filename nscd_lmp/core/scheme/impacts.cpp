@@ -52,8 +52,10 @@ Closing select_closing(State &s, Bends &bends)
 {
   std::size_t closing = 0;
   double energy = 0, given_back = 0;
+  const double least = s.in.settings.min_bounce;
   bends.look(s, [&](std::size_t k, double u) {
-    return u < -resting_kicks * s.table.infos[k].kick - tolerances * tolerance(s.scales, worth(s.table.infos[k]));
+    const double rests = resting_kicks * s.table.infos[k].kick + tolerances * tolerance(s.scales, worth(s.table.infos[k]));
+    return u < -std::max(rests, least);
   });
   for (const std::size_t k : bends.first_meetings(s)) {
     s.table.swap(k, closing);

@@ -15,7 +15,8 @@
 // In Newton's cradle the ball at the far end leaves.
 //
 // "Faster than resting contacts do" is faster than 2 dt |f|/m + 10 tolerances, f/m the larger one of the two grains. It
-// is the whole smooth force: one along the wall, or common to both, makes slow impacts count as resting too.
+// is the whole smooth force: one along the wall, or common to both, makes slow impacts count as resting too. Keyword
+// min_bounce raises that bound.
 //
 // Fails: a dense bed under e > 0 would take rounds without end (inelastic collapse). After 1000 rounds, or when they
 // have visited the contacts 50 times in the mean (1000 visits are free), the rest is left to the gap constraint, which

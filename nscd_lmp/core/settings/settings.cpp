@@ -181,6 +181,14 @@ static void check_budget(const Settings &s)
     fail("budget goes with criterion natural: criterion paper does not say how good an answer is");
 }
 
+static void check_min_bounce(const Settings &s)
+{
+  if (s.min_bounce == 0) return;
+  if (!s.restitutive()) fail("min_bounce = ", s.min_bounce, " has no effect without restitution: leave it out");
+  if (!find_scheme(s.law).looks_ahead)
+    fail("min_bounce goes with law gap: law ", s.law, " gives back e of the velocities at the start of a step");
+}
+
 static void check_overlap(const Settings &s)
 {
   if (s.overlap && !find_scheme(s.law).looks_ahead)
@@ -197,6 +205,7 @@ Settings checked(Settings s, int dimension)
   choose_tolerance(s);
   check_budget(s);
   check_overlap(s);
+  check_min_bounce(s);
   if (s.frictional() && !solver.friction)
     fail("solver ", solver.name, " is for contacts without friction: choose another, or leave friction out");
   check_parameter("rho", s.rho, solver);

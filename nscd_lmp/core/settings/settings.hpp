@@ -48,6 +48,7 @@ struct Settings {
   std::optional<double> rho{};   // multiple of 1/W_nn; none: the solver's own default
   std::optional<double> gamma{};
   double theta = 0.5;            // law moreau
+  double min_bounce = 0;         // law gap: pairs that meet slower than this stop, m/s
   double recovery = 0.2;         // law gap: share of an overlap given back per step, speed-limited
   Unconverged unconverged = Unconverged::warn;
   int threads = 1;               // of each rank

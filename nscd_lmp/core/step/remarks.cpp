@@ -99,8 +99,8 @@ std::vector<std::string> Remarks::take(const Settings &s, bool looks_ahead)
                             "use criterion natural, or a smaller tol"));
   if (impacts_left_ > 0)
     said.push_back(sentence("in ", impacts_left_, " of ", steps_, " steps more impacts followed each other than law ",
-                            s.law, " takes one after another, and the rest gave no energy back: use law moreau, or a ",
-                            "smaller timestep if the grains do not touch yet"));
+                            s.law, " takes one after another, and the rest gave no energy back: let slow ones stop, ",
+                            "`min_bounce`, use law moreau, or a smaller timestep if the grains do not touch yet"));
   if (overlap_ratio_ > std::max(overlap_worth_saying, s.overlap.value_or(0)))
     said.push_back(sentence("grains overlap by up to ", rounded(overlap_ratio_), " of the smaller radius: ",
                             looks_ahead ? "start without overlap, lower tol, or move obstacles by less a step"

@@ -159,7 +159,7 @@ void Rounds::resolve_impacts_first(Reason reason)
     solves_.begin_budget();
     solves_.solve({count, true, norm, tol}, EnergyLimit::From::solve);
   };
-  constexpr std::size_t few = 8;   // contacts, each for so many bodies: what all of those cost is little beside the rest
+  constexpr std::size_t few = 8;   // contacts, each for so many bodies: what all of those cost is little beside that
   impacts_left_ = scheme_.impacts(state_, [&](std::size_t count) {
     if (state_.exec.halo || solves_.is_custom() || few * count > state_.motion.bodies.size()) return solve(count);
     few_bodies_.with(state_, count, [&] { solve(count); });
