@@ -79,8 +79,8 @@ def attach(
         Tangential restitution of contacts without their own; with friction only; 0 to 1.
     min_bounce : float
         Of law ``"gap"`` with restitution: pairs that meet slower than this velocity do not bounce. Dense beds, where
-        grains meet slowly without end, are solved several times as fast with it: a grain that drops from a height h
-        meets with sqrt(2 g h); >= 0.
+        grains meet slowly without end, are solved faster with it. A grain that drops from a height h meets with sqrt(2
+        g h); >= 0.
     materials : dict, optional
         What contacts of two types of atoms have of their own: ``{(1, 2): nscd_lmp.Material(friction=0.3)}``. Of several
         that name a pair the later ones hold. With ``pair_style nscd`` give them to its ``pair_coeff``.

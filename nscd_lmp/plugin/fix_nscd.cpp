@@ -2,7 +2,6 @@
 #include "fix_nscd.hpp"
 
 #include "base/error.hpp"
-#include "contact_list.hpp"
 #include "pair_nscd.hpp"
 #include "progress.hpp"
 #include "scene/doubts.hpp"
@@ -15,7 +14,6 @@
 #include <error.h>
 #include <force.h>
 #include <modify.h>
-#include <neigh_list.h>
 #include <neighbor.h>
 #include <output.h>
 #include <update.h>
@@ -62,7 +60,7 @@ void require_own_kinds_of_walls(const std::vector<std::string> &words)
 }    // namespace
 
 FixNscd::FixNscd(LAMMPS *lmp, int narg, char **arg) : Fix(lmp, narg, arg), ranks_(world), checks_(lmp, this, ranks_),
-    lost_(lmp, ranks_)
+    lost_(lmp, ranks_), listed_(lmp, ranks_)
 {
   time_integrate = 1;
   dynamic_group_allow = 1;
@@ -102,11 +100,7 @@ int FixNscd::setmask() { return FINAL_INTEGRATE | POST_RUN; }
 // The contact pairs come from the pair style's list: with pair_style zero it costs nothing more.
 void FixNscd::find_list()
 {
-  const ContactList found = find_contact_list(lmp);
-  list_ = found.list;
-  list_limit_ = found.limit;
-  list_reach_ = 0;   // cutoffs may be others than in the last run
-  if (!list_)
+  if (!listed_.begin_run())
     error->all(FLERR,
                "Fix nscd {} needs the neighbor list of a pair style, and pair style {} has none: use pair_style nscd, "
                "alone with pair_coeff * *, or in hybrid/overlay with pair_coeff * * nscd",
@@ -246,7 +240,6 @@ void FixNscd::setup(int /*vflag*/)
   check_run();
   find_list();
   step_->begin_run(neighbor->ago == 0);
-  if (neighbor->ago == 0) list_cutoffs_.clear();   // to be measured again: settings may have changed
   step_->see(grains());
   steps_ = 0;
   tell_doubts();
@@ -254,29 +247,6 @@ void FixNscd::setup(int /*vflag*/)
   if (comm->me != 0) return;
   if (!step_->crowding().empty()) error->warning(FLERR, "Fix nscd {}: {}", id, step_->crowding());
   utils::logmesg(lmp, "fix nscd {}: {}\n", id, nscd::describe(*step_));
-}
-
-// Surface distance up to which all pairs were listed at the last build: over the type pairs, cutoff + skin less
-// the largest radii of the two types. Two types of obstacles need no cutoff.
-void FixNscd::measure_list_reach()
-{
-  const int types = atom->ntypes + 1;   // from 1
-  std::vector<double> found(2 * types, 0);
-  const auto largest = found.begin(), moves = largest + types;
-  for (int i = 0; i < atom->nlocal; ++i) {
-    const int type = atom->type[i];
-    largest[type] = std::max(largest[type], atom->radius[i]);
-    if (atom->mask[i] & groupbit) moves[type] = 1;
-  }
-  ranks_.max(found);  // the largest of a type may be on another rank
-  list_reach_ = INFINITY;
-  list_cutoffs_ = list_cutoffs(lmp);
-  for (int a = 1; a < types; ++a)
-    for (int b = 1; b < types; ++b) {
-      const double cutoff = list_cutoffs_[a * types + b];
-      if (largest[a] > 0 && largest[b] > 0 && moves[a] + moves[b] > 0)
-        list_reach_ = std::min(list_reach_, cutoff - largest[a] - largest[b]);
-    }
 }
 
 // The rank of every atom, from its owner by LAMMPS' communication of ghosts.
@@ -350,25 +320,9 @@ nscd::Grains FixNscd::grains()
 
 nscd::PairList FixNscd::pairs()
 {
-  nscd::PairList p;
-  p.count = list_->inum;
-  p.atom = list_->ilist;
-  p.neighbors = list_->numneigh;
-  p.first = list_->firstneigh;
-  p.cross_pairs_twice = !force->newton_pair;
-  p.just_built = neighbor->ago == 0;
-  if (p.just_built || list_cutoffs_.empty()) {
-    measure_list_reach();
-    images_ = images_of(lmp);
-  }
-  p.reach = std::min(list_reach_, list_limit_);
-  p.beyond_radii = list_limit_;
-  p.excludes = excludes_;
-  p.types = atom->ntypes + 1;
-  p.type = atom->type;
-  p.cutoffs = list_cutoffs_.data();
-  p.images = images_;
-  return p;
+  nscd::PairList pairs = listed_.pairs(groupbit);
+  pairs.excludes = excludes_;
+  return pairs;
 }
 
 void FixNscd::final_integrate()

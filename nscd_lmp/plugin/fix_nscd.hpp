@@ -2,6 +2,7 @@
 // fix nscd: the script door. LAMMPS arrays in, velocities out; no numerics.
 #pragma once
 
+#include "listed_pairs.hpp"
 #include "lost_grains.hpp"
 #include "mpi_ranks.hpp"
 #include "restart.hpp"
@@ -50,7 +51,6 @@ class FixNscd : public Fix {
   void give_to_walls();
   void check_run();
   void tell_of_exclusions();
-  void measure_list_reach();
   void find_list();
   void tell_doubts();
   nscd::Grains grains();
@@ -63,20 +63,16 @@ class FixNscd : public Fix {
   nscd::MpiRanks ranks_;
   SceneChecks checks_;
   LostGrains lost_;
+  ListedPairs listed_;
   nscd::Settings keywords_;             // its own, without what the pair style and fixes wall/nscd add
   std::unique_ptr<nscd::Step> step_;
-  class NeighList *list_ = nullptr;
   std::vector<int> homes_;              // (owned + ghosts) rank that owns the atom; empty on one rank
   std::vector<double> masses_;          // per owned atom, where masses are per type
   std::vector<double> local_values_;
   std::vector<double *> local_rows_;
   nscd::Box box_;
-  double list_reach_ = 0;
-  double list_limit_ = 0;               // as ContactList has it
   int held_ = 0;                        // bits of the groups of fix freeze
   SceneChecks::OtherGroups others_;     // bits of the groups of other fixes nscd
-  std::vector<double> list_cutoffs_;   // (types + 1, types + 1) of centres
-  nscd::Images images_;
   bool rows_every_step_ = false;
   bool doubted_ = false, materials_doubted_ = false;
   nscd::Totals totals_;

@@ -54,7 +54,8 @@ Closing select_closing(State &s, Bends &bends)
   double energy = 0, given_back = 0;
   const double least = s.in.settings.min_bounce;
   bends.look(s, [&](std::size_t k, double u) {
-    const double rests = resting_kicks * s.table.infos[k].kick + tolerances * tolerance(s.scales, worth(s.table.infos[k]));
+    const ContactInfo &info = s.table.infos[k];
+    const double rests = resting_kicks * info.kick + tolerances * tolerance(s.scales, worth(info));
     return u < -std::max(rests, least);
   });
   for (const std::size_t k : bends.first_meetings(s)) {

@@ -126,9 +126,9 @@ std::vector<Keyword> table()
       {.name = "min_bounce",
        .value = number(at(&Settings::min_bounce)),
        .range = {.lo = 0},
-       .doc = "of law *gap* with restitution: pairs that meet slower than this velocity do not bounce. Dense beds, where "
-              "grains meet slowly without end, are solved several times as fast with it: a grain that drops from a "
-              "height h meets with sqrt(2 g h)"},
+       .doc = "of law *gap* with restitution: pairs that meet slower than this velocity do not bounce. Dense beds, "
+              "where grains meet slowly without end, are solved faster with it. A grain that drops from a height h "
+              "meets with sqrt(2 g h)"},
       {.name = "material",
        .value = {.kind = "I J and its numbers", .read = read_pair, .repeats = true},
        .otherwise = "none",
