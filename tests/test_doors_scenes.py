@@ -200,7 +200,7 @@ def test_torques_on_grains_without_spins_are_told_once(balls, tmp_path, door):
     rough = "granular hooke 1000 0.1 tangential linear_nohistory 0.5 0.5"
     lmp = balls(after=f"fix soft all wall/gran {rough} zplane -0.6 NULL\nvelocity all set 1 0 -1")
     harden(lmp, door)
-    (said,) = told(lmp, door, "run 30", tmp_path / "first")
+    (said,) = [one for one in told(lmp, door, "run 30", tmp_path / "first") if "soft wall" not in one]
     assert "torques act on grains without friction" in said
     assert told(lmp, door, "run 5", tmp_path / "second") == []
 

@@ -218,18 +218,22 @@ def test_a_wall_without_a_fix_nscd():
             "fix w: it rotates about an axis that is not along x, in which the box is periodic, and grains touch it at "
             "the box' faces: use that axis, or a boundary that is not periodic",
         ),
-        (
-            "p f f",
-            "region r",
-            "fix w: it does not lie alike on the two faces of the box in x, in which the box is periodic, and a grain "
-            "there would miss a part of it: use a boundary that is not periodic, or a wall that ends a radius ahead of "
-            "the faces or goes on alike by a radius beyond them",
-        ),
     ],
 )
 def test_periodic_boxes_that_a_wall_does_not_repeat_in(boundary, wall, message):
     said = refused("region r sphere 2 0 0 2.5", f"fix w all wall/nscd {wall}", "run 0", boundary=boundary)
     assert said == f"Fix nscd hard: {message}"
+
+
+def test_a_region_that_a_periodic_box_cuts_is_told_of(tmp_path):
+    """It is no error: LAMMPS' users have such regions, where no grain gets to."""
+    lmp = walled(grains([0, 0, 0.1], 0.1, 2.0), "fix hard all nscd", boundary="p f f")
+    log = tmp_path / "log"
+    lmp.commands_list([f"log {log}", "region r sphere 2 0 0 2.5", "fix w all wall/nscd region r", "run 0", "run 0"])
+    lmp.close()
+    told = [line for line in log.read_text().splitlines() if "it does not lie alike" in line]
+    assert len(told) == 1
+    assert "Fix nscd hard: fix w: it does not lie alike on the two faces of the box in x" in told[0]
 
 
 @pytest.mark.parametrize("wall", ["zcylinder 3 rotate 1 0 0 0 0 0 1", "cylinder 0 0 0 0 0 1 2.5 rotate 1 0 0 0 0 0 1"])

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "scene_checks.hpp"
 
+#include "region_wall.hpp"
+
 #include "base/error.hpp"
 #include "scene/list/bonded.hpp"
 
@@ -164,7 +166,16 @@ void SceneChecks::require_walls_repeat(const nscd::Settings &settings)
   std::copy_n(domain->boxlo, 3, box.low);
   for (int i = 0; i < atom->nlocal; ++i) box.radius = std::max(box.radius, atom->radius[i]);
   ranks_.max({&box.radius, 1});
-  nscd::require_walls_repeat(settings.walls, box);
+  for (const nscd::Wall &wall : settings.walls) {
+    try {
+      nscd::require_walls_repeat({&wall, 1}, box);
+    } catch (const nscd::Error &unlike) {
+      // LAMMPS' users have regions that reach beyond a periodic box where no grain gets to.
+      if (!dynamic_cast<const RegionWall *>(wall.shape.get())) throw;
+      const bool is_new = walls_told_of_.insert(wall.name).second;
+      if (is_new && comm->me == 0) error->warning(FLERR, "Fix nscd {}: {}", fix_->id, unlike.what());
+    }
+  }
 }
 
 bool SceneChecks::lists_pairs(int bonds) const { return neighbor->special_flag[bonds] != 0; }

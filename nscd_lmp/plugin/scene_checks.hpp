@@ -55,6 +55,7 @@ class SceneChecks : protected Pointers {
   class Fix *fix_;
   nscd::MpiRanks &ranks_;
   std::set<std::string> holders_told_of_, soft_walls_told_of_;   // IDs of fixes
+  std::set<std::string> walls_told_of_;
   bool told_of_soft_contacts_ = false;
 };
 
