@@ -161,7 +161,8 @@ def test_a_cone_along_y_with_ends():
 def test_grains_on_the_wrong_side_of_a_region(region):
     assert refused(f"region r {region}", "fix w all wall/nscd region r", "run 1") == (
         "Fix nscd hard: grain 1 is beyond the wall of fix w: its centre is not in region r, whose surface can hold it "
-        "from there alone: start it inside, give the region another `side`, or the fix a group without it (step 1)"
+        "from there alone: start it inside, give the region another `side`, or the fix a group without it; take a "
+        "smaller timestep if it was inside before (step 1)"
     )
 
 

@@ -24,19 +24,26 @@ double share(int k, int axis)
 
 }    // namespace
 
-void RegionChecks::require_inside(int group, int group_of_wall, double time, const char *fix) const
+void RegionChecks::require_inside(int group, int group_of_wall, double time, const char *fix,
+                                  const nscd::Moved *moved) const
 {
   if (tree_.is_open()) return;
   tree_.place(tree_.poses_at(time));
   tagint outside = 0;
+  const auto is_inside = [&](const double *x) {
+    if (!moved) return tree_.has(x);
+    const Vec4 own = moved->in_own_frame(Vec4{x[0], x[1], x[2], 0});
+    const double point[] = {own[0], own[1], own[2]};
+    return tree_.has(point);
+  };
   for (int i = 0; i < atom->nlocal && outside == 0; ++i)
-    if ((atom->mask[i] & group) && (atom->mask[i] & group_of_wall) && !tree_.has(atom->x[i])) outside = atom->tag[i];
+    if ((atom->mask[i] & group) && (atom->mask[i] & group_of_wall) && !is_inside(atom->x[i])) outside = atom->tag[i];
   tagint any = 0;
   MPI_Allreduce(&outside, &any, 1, MPI_LMP_TAGINT, MPI_MAX, world);
   if (any > 0)
     nscd::fail("grain ", any, " is beyond the wall of fix ", fix, ": its centre is not in region ", tree_.id(),
                ", whose surface can hold it from there alone: start it inside, give the region another `side`, or the ",
-               "fix a group without it");
+               "fix a group without it; take a smaller timestep if it was inside before");
 }
 
 void RegionChecks::require_true_normals(const nscd::Obstacle &wall) const

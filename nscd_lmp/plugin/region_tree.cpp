@@ -43,18 +43,35 @@ bool is_surface(const Region::Contact &c, int feature, RegionSurface &surface)
   return true;
 }
 
+// The surface that is nearest to a point behind it.
+bool find_beyond(Region *region, const double *point, int feature, RegionSurface &found)
+{
+  const Flipped flip(region, true);
+  const int count = region->surface(point[0], point[1], point[2], everywhere);
+  const auto nearer = [](const Region::Contact &a, const Region::Contact &b) { return a.r < b.r; };
+  if (count == 0 || !is_surface(*std::min_element(region->contact, region->contact + count, nearer), feature, found))
+    return false;
+  found.apart = -found.apart;
+  for (double &component : found.normal) component = -component;
+  return true;
+}
+
 }    // namespace
 
 RegionTree::RegionTree(Region *region) : region_(region)
 {
-  add(region);
+  add(region, false);
 }
 
-int RegionTree::add(Region *region)
+int RegionTree::add(Region *region, bool flipped)
 {
-  Node node{region, {}, strcmp(region->style, "union") == 0, 0, -1, region->openflag != 0};
+  Node node{.region = region,
+            .is_union = strcmp(region->style, "union") == 0,
+            .flipped = flipped,
+            .is_open = region->openflag != 0};
   if (node.is_union || strcmp(region->style, "intersect") == 0) {
-    for (int k = 0; k < region->nregion; ++k) node.parts.push_back(add(region->reglist[k]));
+    const bool outside = (region->interior == 0) != flipped;
+    for (int k = 0; k < region->nregion; ++k) node.parts.push_back(add(region->reglist[k], outside));
     const auto is_open = [this](int part) { return nodes_[std::size_t(part)].is_open; };
     node.is_open = node.is_union ? std::any_of(node.parts.begin(), node.parts.end(), is_open)
                                  : std::all_of(node.parts.begin(), node.parts.end(), is_open);
@@ -166,19 +183,16 @@ const RegionTree::Node &RegionTree::leaf_of(int feature) const
   return *std::find_if(nodes_.begin(), nodes_.end(), has);
 }
 
-// From either side of its part: which one a union shows is for find() to say.
 bool RegionTree::find_feature(const double *point, int feature, RegionSurface &found) const
 {
   const Node &leaf = leaf_of(feature);
-  for (const bool flipped : {false, true}) {
-    const Flipped flip(leaf.region, flipped);
-    const int count = leaf.region->surface(point[0], point[1], point[2], everywhere);
-    for (int k = 0; k < count; ++k)
-      if (leaf.first_feature + leaf.region->contact[k].iwall == feature)
-        return is_surface(leaf.region->contact[k], feature, found);
-    if (leaf.region->openflag) break;   // both sides have been asked
-  }
-  return false;
+  Region *region = leaf.region;
+  const Flipped flip(region, leaf.flipped);
+  const int count = region->surface(point[0], point[1], point[2], everywhere);
+  for (int k = 0; k < count; ++k)
+    if (leaf.first_feature + region->contact[k].iwall == feature) return is_surface(region->contact[k], feature, found);
+  if (region->openflag || region->match(point[0], point[1], point[2])) return false;
+  return find_beyond(region, point, feature, found);
 }
 
 int RegionTree::moving_part(int feature) const { return leaf_of(feature).moving; }

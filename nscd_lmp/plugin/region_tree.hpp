@@ -22,7 +22,7 @@ struct RegionPose {
 // Where the surface of a part is nearest to a point.
 struct RegionSurface {
   int feature;          // the same from step to step
-  double apart;         // m, from the surface to the point, >= 0
+  double apart;         // m, from the surface to the point
   double normal[3];     // unit, towards the point
 };
 
@@ -47,7 +47,8 @@ class RegionTree {
 
   // With parts placed: adds the surfaces nearer than `cutoff` (m).
   void find(const double *point, double cutoff, std::vector<RegionSurface> &found) const;
-  // That one, if the point faces it; returns false if not.
+  // That one, if the point faces it; returns false if not. A point beyond its part, where no grain can be, is apart
+  // from the part's surface there by less than 0.
   bool find_feature(const double *point, int feature, RegionSurface &found) const;
   // Whether it is on the side where grains are.
   bool has(const double *point) const { return region_->match(point[0], point[1], point[2]) != 0; }
@@ -64,13 +65,15 @@ class RegionTree {
 
  private:
   struct Node {
-    Region *region;
-    std::vector<int> parts;    // of a union or intersection
-    bool is_union;
-    int first_feature, moving;
-    bool is_open;              // LAMMPS has all points on its side
+    Region *region = nullptr;
+    std::vector<int> parts{};   // of a union or intersection
+    bool is_union = false;
+    bool flipped = false;       // of a part: grains are on the other side than it says itself
+    int first_feature = 0;
+    int moving = -1;            // in moving_, or -1: it stands
+    bool is_open = false;       // LAMMPS has all points on its side
   };
-  int add(Region *region);
+  int add(Region *region, bool flipped);
   void find(const Node &node, const double *point, double cutoff, bool flipped,
             std::vector<RegionSurface> &found) const;
   bool is_kept(const Node &node, std::size_t part, const double *surface, bool flipped) const;

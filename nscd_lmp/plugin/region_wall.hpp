@@ -18,6 +18,7 @@ class RegionWall final : public nscd::Obstacle {
   nscd::Touch at(const nscd::Vec4 &centre, double radius, int feature) const override;
   void touch(const nscd::Vec4 &centre, double radius, double within, std::vector<nscd::Touch> &found) const override;
   bool is_curved() const override { return true; }
+  bool has_two_sides() const override { return tree_->is_open(); }
 
   std::shared_ptr<const nscd::Obstacle> after(double time, double step) const override;
   nscd::Vec4 velocity_at(const nscd::Vec4 &point, const nscd::Touch &touch) const override;

@@ -184,6 +184,7 @@ void FixWallNscd::begin_step()
 void FixWallNscd::clear()
 {
   sums_.fill(0);
+  summed_ = -1;
   if (wants_rows_) clear_rows();
 }
 
@@ -246,7 +247,12 @@ double FixWallNscd::compute_vector(int n)
 
 void FixWallNscd::require_inside(int group) const
 {
-  if (tree_) RegionChecks(lmp, *tree_).require_inside(group, groupbit, dt_, id);
+  if (!tree_) return;
+  const auto region = std::make_shared<RegionWall>(tree_, domain->dimension == 2);
+  std::shared_ptr<const nscd::Moved> moved;
+  if (variables_->is_given()) moved = std::make_shared<nscd::Moved>(region, variables_, time_);
+  else moved = std::dynamic_pointer_cast<const nscd::Moved>(options_.wall(region, time_).shape);
+  RegionChecks(lmp, *tree_).require_inside(group, groupbit, dt_, id, moved.get());
 }
 
 void FixWallNscd::write_restart(FILE *file)

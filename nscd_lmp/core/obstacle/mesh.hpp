@@ -27,6 +27,7 @@ class Mesh final : public Obstacle {
   Touch at(const Vec4 &centre, double radius, int feature) const override;
   void touch(const Vec4 &centre, double radius, double within, std::vector<Touch> &found) const override;
   bool is_curved() const override { return true; }
+  bool has_two_sides() const override { return true; }
   std::string told() const override;
   // No normal of a face may have a z component.
   void require_planar(const std::string &name) const override;

@@ -19,6 +19,9 @@ class Moved final : public Obstacle {
   Touch at(const Vec4 &centre, double radius, int feature) const override;
   void touch(const Vec4 &centre, double radius, double within, std::vector<Touch> &found) const override;
   bool is_curved() const override { return shape_->is_curved() || course_->rotates; }
+  bool has_two_sides() const override { return shape_->has_two_sides(); }
+  // Where a point is by the shape's own words.
+  Vec4 in_own_frame(const Vec4 &point) const;
 
   std::shared_ptr<const Obstacle> after(double time, double step) const override;
   Vec4 velocity_at(const Vec4 &point, const Touch &touch) const override;
@@ -36,7 +39,6 @@ class Moved final : public Obstacle {
 
  private:
   Vec4 turned(const Vec4 &vector, double sine) const;
-  Vec4 in_own_frame(const Vec4 &point) const;
 
   std::shared_ptr<const Obstacle> shape_;
   std::shared_ptr<const Course> course_;

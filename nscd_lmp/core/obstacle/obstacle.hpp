@@ -53,6 +53,8 @@ class Obstacle {
   }
   // Whether normals differ from place to place.
   virtual bool is_curved() const { return false; }
+  // Whether at() answers from the side on which the centre is, so that a grain beyond it seems to be apart from it.
+  virtual bool has_two_sides() const { return false; }
 
   // The same wall `time` (s) later, in a step that lasts `step` (s) from now: its velocities are those of that step.
   // Null if it stands.

@@ -27,8 +27,9 @@ struct Ahead {
   alignas(vec4_alignment) Vec4 way;   // m, of the grain until then
 };
 
-// None if it does not matter, or if the grain has passed the feature by then.
-std::optional<Ahead> ahead_of(const State &s, const Candidate &c, int i)
+// None if it does not matter, or if the grain has passed the feature by then, or gone through it: it is on the side
+// that `normal` points to now.
+std::optional<Ahead> ahead_of(const State &s, const Candidate &c, int i, const Vec4 &normal)
 {
   const int wall = wall_of(c.atom_j);
   if (s.scales.lasting_moment == 0 || !(s.obstacles.moves(wall) || s.obstacles.sought(wall).is_curved())) return {};
@@ -36,7 +37,7 @@ std::optional<Ahead> ahead_of(const State &s, const Candidate &c, int i)
   const Vec4 way = (start_velocity(s, i) + carried_apart(s, c)) * s.scales.lasting_moment;
   grain.centre += way;
   const Ahead ahead{grain, touch_of(grain, c, s.obstacles.in_middle(wall)), way};
-  if (std::isinf(ahead.touch.gap)) return {};
+  if (std::isinf(ahead.touch.gap) || dot(ahead.touch.normal, normal) < 0) return {};
   return ahead;
 }
 
@@ -47,10 +48,11 @@ void take_plane_ahead(const State &s, const Candidate &c, const Ahead &ahead, Pl
 {
   Sphere grain = ahead.grain;
   grain.centre += ahead.way;
-  const double end = touch_of(grain, c, s.obstacles.at_end(wall_of(c.atom_j))).gap;
-  if (std::isinf(end)) return;   // by then it has passed the feature
+  const Touch then = touch_of(grain, c, s.obstacles.at_end(wall_of(c.atom_j)));
+  if (std::isinf(then.gap)) return;   // by then it has passed the feature
   const Vec4 way = (at.before + carried_apart(s, c)) * s.scales.lasting_moment;
   const Vec4 &normal = ahead.touch.normal;
+  const double end = gap_on_side(then, normal, grain.radius);
   const double start = std::min(ahead.touch.gap - dot(normal, way), end - 2 * dot(normal, way));
   at.normal = normal;
   at.curve = std::min(start - at.gap, 0.0);
@@ -72,7 +74,7 @@ Placed placed_at_wall(State &s, const Candidate &c, int i, std::size_t k)
   const Sphere &grain = s.atoms.spheres[c.atom_i];
   const Touch touch = touch_of(grain, c, wall);
   Placed at{touch.normal, start_velocity(s, i), touch.gap, grain.radius, 0, 0};
-  const std::optional<Ahead> ahead = ahead_of(s, c, i);
+  const std::optional<Ahead> ahead = ahead_of(s, c, i, touch.normal);
   if (s.obstacles.moves(number)) {
     at.j = s.add_obstacle(ahead ? wall_velocity(s.obstacles.in_middle(number), ahead->grain, ahead->touch)
                                 : wall_velocity(wall, grain, touch));

@@ -32,6 +32,13 @@ inline Touch touch_of(const Sphere &grain, const Candidate &c, const Obstacle &w
   return wall.at(grain.centre, grain.radius, feature_of(c.atom_j));
 }
 
+// The gap of a touch, on the side of the wall that `normal` points to: beyond it the grain is inside by all that it has
+// gone through.
+inline double gap_on_side(const Touch &touch, const Vec4 &normal, double radius)
+{
+  return dot(touch.normal, normal) < 0 ? -touch.gap - 2 * radius : touch.gap;
+}
+
 // An atom moved by its body and, for these times (s), by its drift.
 NSCD_INLINE Sphere drifted(const State &s, int atom, double centre, double radius)
 {
@@ -55,7 +62,13 @@ template <class Where>
 NSCD_INLINE double gap_at(const State &s, const Candidate &c, Where where)
 {
   const Sphere a = where(s, c.atom_i);
-  if (is_wall(c)) return touch_of(a, c, s.obstacles.at_end(wall_of(c.atom_j))).gap;
+  if (is_wall(c)) {
+    const Obstacle &wall = s.obstacles.at_end(wall_of(c.atom_j));
+    const Touch end = touch_of(a, c, wall);
+    if (!wall.has_two_sides()) return end.gap;
+    const Touch start = touch_of(s.atoms.spheres[c.atom_i], c, s.obstacles.sought(wall_of(c.atom_j)));
+    return gap_on_side(end, start.normal, a.radius);
+  }
   return gap_of(a, where(s, c.atom_j));
 }
 
