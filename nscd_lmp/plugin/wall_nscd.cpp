@@ -204,7 +204,8 @@ std::array<double, 3> FixWallNscd::torque_point() const
 {
   std::array<double, 3> point{};
   const nscd::Course *course = variables_->rotates ? variables_.get() : options_.course();
-  if (course && course->rotates) std::copy_n(&course->point[0], 3, point.begin());
+  if (course && course->rotates)
+    for (int d = 0; d < 3; ++d) point[std::size_t(d)] = course->point[d];
   else if (tree_ && tree_->rotation_point()) std::copy_n(tree_->rotation_point(), 3, point.begin());
   return point;
 }

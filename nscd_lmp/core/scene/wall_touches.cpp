@@ -44,7 +44,7 @@ std::array<double, 3> torque_point(const Obstacle &wall)
 {
   std::array<double, 3> point{};
   const auto *moved = dynamic_cast<const Moved *>(&wall);
-  if (moved && moved->course().rotates) std::copy_n(&moved->course().point[0], 3, point.begin());
+  for (std::size_t d = 0; moved && moved->course().rotates && d < 3; ++d) point[d] = moved->course().point[int(d)];
   return point;
 }
 
