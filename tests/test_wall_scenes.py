@@ -36,20 +36,34 @@ def test_a_dynamic_group_lets_grains_through_as_they_change():
     lmp.close()
 
 
-def test_two_fixes_nscd_share_a_wall_that_moves_once():
+@pytest.mark.parametrize(
+    "wall",
+    ["zplane 0 NULL move NULL NULL v_up", "region lift"],
+)
+def test_two_fixes_nscd_share_a_wall_that_moves_once(wall):
     balls = grains([[-1, 0, R], [1, 0, R]], R, MASS)
     lmp = walled(
         balls, "group one id 1", "group two id 2", f"fix first one nscd {EXACT}", f"fix second two nscd {EXACT}"
     )
+    lift = "region lift block -2 2 -2 2 0 2 move NULL NULL v_up"
     lmp.commands_list(
-        ["variable up equal 0.5*step*dt", "fix w all wall/nscd zplane 0 NULL move NULL NULL v_up contacts"]
+        ["variable up equal 0.5*step*dt", lift, f"fix w all wall/nscd {wall} contacts", "run 100", "run 100"]
     )
-    lmp.command("run 200")
     assert state(lmp)[0][:, 2] == pytest.approx([R + 0.1] * 2, abs=1e-9)
     assert numbers(lmp, FORCE) == pytest.approx([0, 0, -2 * MASS * GRAVITY], rel=1e-9)
     assert numbers(lmp, SHIFT) == pytest.approx([0, 0, 0.1])
     rows = lmp.numpy.extract_fix("w", 1, 2)[:2]
     assert rows[:, 3] == pytest.approx([MASS * GRAVITY] * 2)
+    lmp.close()
+
+
+@pytest.mark.parametrize("change", ["unfix w", "fix other all wall/nscd zplane NULL 3"])
+def test_a_wall_that_comes_or_goes_ahead_of_a_run_without_init_is_an_error(change):
+    lmp = walled(grains([0, 0, R], R, MASS), f"fix hard all nscd {EXACT}", "fix w all wall/nscd zplane 0 NULL")
+    lmp.commands_list(["run 10", change])
+    with pytest.raises(Exception, match=r"a fix wall/nscd has come or gone, .*leave `pre no` out"):
+        lmp.command("run 10 pre no")
+    lmp.command("run 10")
     lmp.close()
 
 

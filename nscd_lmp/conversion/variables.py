@@ -70,7 +70,7 @@ class Variables:
             return
         try:
             self._lammps.command(command.text)
-        except Exception:
+        except Exception:  # LAMMPS raises no other type
             if style == "equal":  # one that was defined earlier has no value from here on
                 self._lammps.command(f"variable {name} delete")
 
@@ -94,7 +94,7 @@ class Variables:
             return text
         try:
             return str(self._lammps.expand(text))
-        except Exception as error:
+        except Exception as error:  # LAMMPS raises no other type
             names = UNKNOWN.findall(str(error)) or [next(filter(None, one)) for one in REFERENCE.findall(text)]
             name = names[0] if names else "NAME"
             raise NscdError(
@@ -108,5 +108,5 @@ class Variables:
             text = f"$({text})"
         try:
             return float(self._lammps.expand(text) if "$" in text else text)
-        except Exception:
+        except Exception:  # of LAMMPS, which raises no other type, or of float()
             return None

@@ -151,6 +151,7 @@ void FixNscd::require_own_walls_stand() const
 void FixNscd::take_scene()
 {
   walls_ = walls_of(lmp);
+  knows_walls_ = true;
   nscd::Settings wanted = with_pair(keywords_);
   for (FixWallNscd *wall : walls_) wanted.walls.push_back(wall->begin_run());
   wanted = nscd::checked(wanted, domain->dimension);
@@ -169,6 +170,8 @@ void FixNscd::take_scene()
 
 void FixNscd::begin_walls()
 {
+  if (!knows_walls_)
+    nscd::fail("a fix wall/nscd has come or gone, and `run ... pre no` does not look at fixes: leave `pre no` out");
   for (FixWallNscd *wall : walls_) {
     if (neighbor->ago == 0 || steps_ == 0) wall->require_inside(groupbit);
     wall->begin_step();

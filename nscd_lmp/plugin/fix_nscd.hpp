@@ -41,6 +41,9 @@ class FixNscd : public Fix {
   int pack_forward_comm(int count, int *list, double *to, int pbc_flag, int *pbc) override;
   void unpack_forward_comm(int count, int first, double *from) override;
 
+  // A fix wall/nscd has come or goes: the next init takes the others.
+  void forget_walls() { walls_.clear(), knows_walls_ = false; }
+
  private:
   class PairNscd *pair() const;
   nscd::Settings with_pair(nscd::Settings settings) const;
@@ -80,6 +83,7 @@ class FixNscd : public Fix {
   int largest_record_ = 0;              // of all ranks
   std::string materials_;               // of the pair style, as it describes them; empty: it has none
   std::vector<class FixWallNscd *> walls_;   // of the run, behind its own
+  bool knows_walls_ = false;
   std::vector<nscd::WallTouch> wall_touches_;
   std::vector<double> restart_words_;   // records that wait for the first run
   bool excludes_ = false;               // neigh_modify exclude leaves out pairs that could be contacts

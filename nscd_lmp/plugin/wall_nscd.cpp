@@ -2,6 +2,7 @@
 #include "wall_nscd.hpp"
 
 #include "base/error.hpp"
+#include "fix_nscd.hpp"
 #include "obstacle/kinds.hpp"
 #include "obstacle/moved.hpp"
 #include "region_checks.hpp"
@@ -88,6 +89,7 @@ FixWallNscd::FixWallNscd(LAMMPS *lmp, int narg, char **arg) :
   }
   if (comm->me == 0 && shape_ && !shape_->told().empty())
     utils::logmesg(lmp, "fix wall/nscd {}: {}\n", id, shape_->told());
+  tell_fixes_nscd();
   if (!wants_rows_) return;
   peratom_flag = 1;
   size_peratom_cols = row_columns;
@@ -95,7 +97,17 @@ FixWallNscd::FixWallNscd(LAMMPS *lmp, int narg, char **arg) :
   clear_rows();
 }
 
-FixWallNscd::~FixWallNscd() { memory->destroy(array_atom); }
+FixWallNscd::~FixWallNscd()
+{
+  memory->destroy(array_atom);
+  tell_fixes_nscd();
+}
+
+void FixWallNscd::tell_fixes_nscd() const
+{
+  for (Fix *fix : modify->get_fix_list())
+    if (auto *solves = dynamic_cast<FixNscd *>(fix)) solves->forget_walls();
+}
 
 // `words` begin with the style, as errors name it.
 void FixWallNscd::read(std::vector<std::string> words)
@@ -149,6 +161,8 @@ std::shared_ptr<const nscd::Obstacle> FixWallNscd::shape_in_run()
   region->init();
   tree_ = std::make_shared<RegionTree>(region);
   tree_->begin_run();
+  std::erase_if(trees_, [](const std::weak_ptr<RegionTree> &tree) { return tree.expired(); });
+  trees_.push_back(tree_);
   return std::make_shared<RegionWall>(tree_, domain->dimension == 2);
 }
 
@@ -164,6 +178,8 @@ nscd::Wall FixWallNscd::begin_run()
   }
   nscd::Wall wall = options_.wall(shape, time_);
   wall.groups = groupbit == 1 ? 0 : groupbit;
+  about_ = nscd::torque_point(*wall.shape);
+  if (tree_ && tree_->rotation_point()) std::copy_n(tree_->rotation_point(), 3, about_.begin());
   return wall;
 }
 
@@ -174,7 +190,8 @@ void FixWallNscd::begin_step()
   const bool asks = variables_->is_given() || (tree_ && tree_->moves());
   if (asks) modify->clearstep_compute();
   if (variables_->is_given()) variables_->begin_step(time_, update->dt);
-  if (tree_ && tree_->moves()) tree_->begin_step(update->dt);
+  for (const std::weak_ptr<RegionTree> &tree : trees_)
+    if (const auto alive = tree.lock(); alive && alive->moves()) alive->begin_step(update->dt);
   if (asks) modify->addstep_compute(step_ + 1);
   dt_ = update->dt;
   time_ += dt_;
@@ -199,20 +216,9 @@ void FixWallNscd::clear_rows()
   strongest_.assign(std::size_t(rows_), -1.0);
 }
 
-// Of rotation, or the origin.
-std::array<double, 3> FixWallNscd::torque_point() const
-{
-  std::array<double, 3> point{};
-  const nscd::Course *course = variables_->rotates ? variables_.get() : options_.course();
-  if (course && course->rotates)
-    for (int d = 0; d < 3; ++d) point[std::size_t(d)] = course->point[d];
-  else if (tree_ && tree_->rotation_point()) std::copy_n(tree_->rotation_point(), 3, point.begin());
-  return point;
-}
-
 void FixWallNscd::add(const nscd::WallTouch &touch)
 {
-  nscd::add_touch(sums_, touch, torque_point());
+  nscd::add_touch(sums_, touch, about_);
   const double size = std::hypot(touch.force[0], touch.force[1], touch.force[2]);
   if (!wants_rows_ || size == 0) return;
   double *row = array_atom[touch.grain];

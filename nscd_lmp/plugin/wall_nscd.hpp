@@ -38,15 +38,17 @@ class FixWallNscd : public Fix {
  private:
   void read(std::vector<std::string> words);
   std::shared_ptr<const nscd::Obstacle> shape_in_run();
+  void tell_fixes_nscd() const;
   void clear();
   void clear_rows();
-  std::array<double, 3> torque_point() const;
 
   std::string place_, region_id_;                 // words of where it is and moves; of a region its ID, else empty
   std::shared_ptr<const nscd::Obstacle> shape_;   // of our own kinds
   nscd::WallOptions options_;
   std::shared_ptr<VariableCourse> variables_;
-  std::shared_ptr<RegionTree> tree_;              // of a region
+  std::shared_ptr<RegionTree> tree_;              // of a region, as it was handed out last
+  std::vector<std::weak_ptr<RegionTree>> trees_;  // and to each fix nscd
+  std::array<double, 3> about_{};                 // of torques: the point of the rotation, or the origin, m
   bool wants_rows_ = false;                       // keyword contacts
   double time_ = 0, dt_ = 0;                      // s, at the end of the present step since the fix was defined; step
   bigint step_ = -1;                              // that it has been taken to
